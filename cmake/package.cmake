@@ -43,5 +43,5 @@ endif()
 # to link the library
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS
   "libgsl-dev, libhdf5-dev, libfmt-dev, libdeflate-dev, zlib1g-dev, libudunits2-dev, libpugixml-dev, \
-libzip-dev, libnlopt-dev")
+libzip-dev, libnlopt-dev, libflint-arb-dev")
 include(CPack)

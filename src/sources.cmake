@@ -127,6 +127,9 @@ set(LEAPMAP_SOURCES
   src/numerics/sobol_points.cpp
   src/numerics/sobol_sequence.cpp
   src/hoop/body.cpp
+  src/proof/cells.cpp
+  src/proof/judged_map.cpp
+  src/proof/worst_case.cpp
   src/referee/flight.cpp
   src/referee/motion.cpp
   src/referee/referee.cpp

@@ -12,7 +12,7 @@ case "${1:-main}" in
 esac
 packages="g++ cmake ninja-build git file dpkg-dev libgsl-dev libhdf5-dev libfmt-dev libtomlplusplus-dev
   libcli11-dev libxsimd-dev nlohmann-json3-dev libdeflate-dev zlib1g-dev libudunits2-dev libeigen3-dev
-  libpugixml-dev libzip-dev libnlopt-cxx-dev libboost-dev emscripten esbuild
+  libpugixml-dev libzip-dev libnlopt-cxx-dev libboost-dev libflint-arb-dev emscripten esbuild
   node-d3-brush node-d3-drag node-d3-scale node-d3-selection pybind11-dev python3-dev python3 python3-numpy python3-h5py
   python3-matplotlib python3-xarray"
 if [ "${1:-main}" = docs ] || [ "${1:-main}" = all ]; then

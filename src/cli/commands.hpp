@@ -24,6 +24,7 @@ void add_fit(CommandLine& line, int& status);
 void add_gait(CommandLine& line, int& status);
 void add_join(CommandLine& line, int& status);
 void add_check(CommandLine& line, int& status);
+void add_prove(CommandLine& line, int& status);
 void add_export(CommandLine& line, int& status);
 
 /// --no-lock, of every command that opens files of ours.

@@ -18,6 +18,7 @@
 #include "cli/json.hpp"
 #include "cli/motor.hpp"
 #include "cli/output.hpp"
+#include "cli/proof_lines.hpp"
 #include "cli/shown_units.hpp"
 #include "cli/sweep.hpp"
 #include "engine/provenance.hpp"
@@ -39,7 +40,7 @@ struct HopArguments {
   std::string spec, trace, units;
   double trace_interval = 1e-3;
   std::vector<std::string> overrides, flags;  // KEY=VALUE; flags hold whatever their place on the line
-  bool json = false, gradient = false, scatter = false;
+  bool json = false, gradient = false, scatter = false, prove = false;
   Locking locking = Locking::required;
 };
 
@@ -280,11 +281,13 @@ void print_hints(const Spec& spec, bool made) {
 }
 
 void print_json(const Spec& spec, const Motion& motion, const Outcome& checked,
-                const std::optional<Motor>& motor, bool gradient, const std::optional<ScatterReport>& made) {
+                const std::optional<Motor>& motor, bool gradient, const std::optional<ScatterReport>& made,
+                const std::optional<Proof>& proof) {
   Json json = json_of(spec, motion, checked);
   if (motor) json["motor"] = json_of(*motor);
   if (gradient) json["gradient"] = gradient_json(spec);
   if (made) json["scatter"] = scatter_json(spec, *made);
+  if (proof) json["proof"] = proof_json(*proof);
   say_json(json);
 }
 
@@ -308,6 +311,8 @@ int run(const HopArguments& arguments) {
   if (!arguments.scatter) refuse_scatter(arguments.overrides, "allowed: with --scatter");
   std::optional<ScatterReport> made;
   if (arguments.scatter) made = scatter(spec);
+  std::optional<Proof> proof;
+  if (arguments.prove) proof = prove(spec.design, spec.scene);
   const double interval = arguments.trace.empty() ? 0.0 : arguments.trace_interval;
   if (!arguments.trace.empty() && !(interval > 0.0))
     throw InputError("--trace-interval: is not a number of seconds; allowed: a number above 0");
@@ -328,12 +333,13 @@ int run(const HopArguments& arguments) {
   const std::string in_units =
       arguments.units.empty() ? "" : lines_in_units(spec, motion.outcome, arguments.units);
   if (arguments.json) {
-    print_json(spec, motion, check.outcome, motor, arguments.gradient, made);
+    print_json(spec, motion, check.outcome, motor, arguments.gradient, made, proof);
   } else {
     print_table(spec, motion, check.outcome, motor);
     if (!arguments.units.empty()) say("{}", in_units);
     if (arguments.gradient) print_gradient(spec);
     if (made) print_scatter(spec, *made, arguments.units);
+    if (proof) say("\n{}", proof_lines(*proof, spec));
     if (!arguments.trace.empty()) say("Trace of {} points: {}\n", motion.points.size(), arguments.trace);
     print_hints(spec, made.has_value());
   }
@@ -358,6 +364,7 @@ void add_hop(CommandLine& line, int& status) {
   command.flag(
       "--scatter", arguments->scatter,
       "report yield, quantiles and the influence of each tolerance, by the spec's [scatter] and [goal]");
+  command.flag("--prove", arguments->prove, "enclose height and time of the jump by proof (leapmap prove)");
   command.flag("--json", arguments->json, "print JSON, with the names and units of a map");
   command
       .value("--units", arguments->units,

@@ -43,7 +43,8 @@ int run(int argc, char** argv) {
                    {"leapmap boundaries maps/slope_mass_ratio.h5", "its discontinuities"},
                    {"leapmap design sweeps/questions/highest.toml", "the best design for given goals"},
                    {"leapmap fit film.csv", "release and friction from a measured motion"},
-                   {"leapmap check maps/slope_mass_ratio.h5", "verify a map"}});
+                   {"leapmap check maps/slope_mass_ratio.h5", "verify a map"},
+                   {"leapmap prove maps/slope_mass_ratio.h5", "prove its designs"}});
   shared.footer(
       "leapmap COMMAND --help describes a command.\n"
       "Exit status: 0 done; 1 failure, or a cross-check found a difference; 2 invalid usage or input; 3 "
@@ -64,6 +65,7 @@ int run(int argc, char** argv) {
   add_fit(line, status);
   add_gait(line, status);
   add_check(line, status);
+  add_prove(line, status);
   add_export(line, status);
   add_join(line, status);
   add_precision(line, status);

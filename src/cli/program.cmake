@@ -25,6 +25,8 @@ add_executable(leapmap-program
   src/cli/output.cpp
   src/cli/precision.cpp
   src/cli/progress.cpp
+  src/cli/proof_lines.cpp
+  src/cli/prove.cpp
   src/cli/spec_flags.cpp
   src/cli/spoken.cpp
   src/cli/stability.cpp

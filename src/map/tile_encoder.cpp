@@ -102,7 +102,11 @@ void TileEncoder::take(std::size_t first, std::span<const Outcome> outcomes, con
       const std::size_t size = value_bytes(*layout_, field);
       assert((first + from + some.size()) * size <= columns_[f].size());
       std::byte* to = columns_[f].data() + (first + from) * size;
-      if (const auto* code = std::get_if<Code>(&field.source)) {
+      if (const auto* code = std::get_if<Code>(&field.source); code && !code->value) {
+        gather_as<std::uint8_t>(column(field).subspan(from, some.size()), to,
+                                [](double value) { return static_cast<std::uint8_t>(value); });
+        continue;
+      } else if (code) {
         gather_as<std::uint8_t>(some, to, code->value);
         continue;
       }

@@ -417,6 +417,27 @@ std::span<const Field> scatter_fields() {
   return table.rows;
 }
 
+std::span<const Field> proof_fields() {
+  static constexpr std::string_view findings[]{"not_computed", "proved", "crossed", "open"};
+  static const auto row = [](ProofColumn column, std::string_view name, std::string_view unit,
+                             std::string_view long_name) {
+    Field field{name, column, unit, long_name, 17};
+    if (column == ProofColumn::finding) field.source = Code{nullptr, nullptr, 0, findings};
+    field.only_of = Friction::sticking, field.by_default = ByDefault::left_out, field.of_proof = column;
+    return field;
+  };
+  static const std::array<Field, proof_columns> rows{
+      row(ProofColumn::finding, "proof", "1",
+          "what is proved of all designs of the cell: one outcome; a discontinuity crosses it; neither"),
+      row(ProofColumn::height_low, "jump_height_low", "1",
+          "no design of a proved cell jumps lower, in hoop diameters"),
+      row(ProofColumn::height_high, "jump_height_high", "1",
+          "no design of a proved cell jumps higher, in hoop diameters"),
+      row(ProofColumn::time_low, "jump_time_low", "s", "no jump of a proved design begins sooner"),
+      row(ProofColumn::time_high, "jump_time_high", "s", "no jump of a proved design begins later")};
+  return rows;
+}
+
 std::vector<const Field*> quantities_of(const std::vector<const Field*>& statistics) {
   std::vector<const Field*> quantities;
   for (const Field& field : map_fields())
@@ -440,13 +461,14 @@ const Field* find_field(std::string_view name) {
     if (const Field* found = find_among(gradient_fields(), name)) return found;
     if (const Field* found = find_among(later_gradient_fields(), name)) return found;
   }
-  return find_among(scatter_fields(), name);
+  if (const Field* found = find_among(scatter_fields(), name)) return found;
+  return find_among(proof_fields(), name);
 }
 
 double stored_number(const Field& field, const Outcome& outcome) {
   if (const auto number = number_of(field)) return number->of(outcome);
   const auto* code = std::get_if<Code>(&field.source);
-  return code && code->value(outcome) != code->fill ? code->value(outcome) : Outcome::none;
+  return code && code->value && code->value(outcome) != code->fill ? code->value(outcome) : Outcome::none;
 }
 
 }  // namespace leapmap

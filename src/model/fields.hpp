@@ -30,7 +30,7 @@ struct Quantity {
 
 /// A small code, stored as u1.
 struct Code {
-  std::uint8_t (*value)(const Outcome&);
+  std::uint8_t (*value)(const Outcome&);    ///< nullptr: it is no part of an outcome
   void (*put)(Outcome&, std::uint8_t);      ///< the inverse
   std::uint8_t fill;                        ///< what a design not computed shows
   std::span<const std::string_view> names;  ///< flag_meanings of 0, 1, 2, ...; empty: a count
@@ -65,13 +65,25 @@ struct OfMade {
   bool error;
 };
 
+/// What is proved of a cell of a map.
+enum class CellFinding : std::uint8_t {
+  none,     ///< nothing was looked at
+  proved,   ///< all designs have one outcome
+  crossed,  ///< two designs have different ones
+  open      ///< neither is known
+};
+
+/// What a map may hold of that: the finding itself, stored as u1, and bounds of all jumps, stored as f8.
+enum class ProofColumn : std::uint8_t { finding, height_low, height_high, time_low, time_high };
+inline constexpr std::size_t proof_columns = 5;
+
 /// Where a field is found if nobody names the fields wanted: in maps and in what solve and hop tell; in the
 /// latter only; or nowhere, as it costs too much.
 enum class ByDefault : std::uint8_t { stored, told, left_out };
 
 struct Field {
   std::string_view name;
-  std::variant<Quantity, Code, Word, OfJump, Derivative, OfMade> source;
+  std::variant<Quantity, Code, Word, OfJump, Derivative, OfMade, ProofColumn> source;
   std::string_view unit;  ///< as UDUNITS reads it; "1": a pure number
   std::string_view long_name;
   int since = 0;                      ///< the minor version of the map's format that brought it
@@ -82,6 +94,7 @@ struct Field {
   bool of_wall = false;           ///< of scenes with a clear_height
   bool of_way = false;            ///< of the way to a jump, for which the design is solved once more
   bool Wanted::*needs = nullptr;  ///< what a solver has to be asked for; nullptr: nothing
+  std::optional<ProofColumn> of_proof{};  ///< what it tells of what is proved
 };
 
 /// Whether a design of the scene has it.
@@ -123,6 +136,9 @@ const Field* find_body_gradient(const OutcomeNumber& of, std::string_view key);
 
 /// What a map may hold of hoops as made: yield, jump_height_mean and so on, each followed by its error.
 std::span<const Field> scatter_fields();
+
+/// What a map may hold of what is proved of its cells.
+std::span<const Field> proof_fields();
 
 /// The quantities of which these are statistics, in the order of map_fields.
 std::vector<const Field*> quantities_of(const std::vector<const Field*>& statistics);

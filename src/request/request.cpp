@@ -76,6 +76,8 @@ std::vector<const Field*> columns_of(const Spec& spec) {
   std::vector<OutcomeNumber> derived;
   for (const std::string& name : spec.output.gradients) derived.push_back(*number_of(*find_field(name)));
   std::ranges::copy(given_columns(spec, derived), std::back_inserter(columns));
+  for (const Field& row : proof_fields())
+    if (std::ranges::find(spec.output.fields, row.name) != spec.output.fields.end()) columns.push_back(&row);
   if (spec.scatter.spreads.empty()) return columns;
   for (const Field& row : scatter_fields())
     if (is_asked_for(spec, row)) columns.push_back(&row);
@@ -127,6 +129,10 @@ bool wants(const Request& request, std::string_view field) {
 }
 
 bool wants_samples(const Request& request) { return std::ranges::any_of(request.columns, is_statistic); }
+
+bool wants_proofs(const Request& request) {
+  return std::ranges::any_of(request.columns, [](const Field* column) { return column->of_proof.has_value(); });
+}
 
 bool derives_by_body(const Request& request) {
   return std::ranges::any_of(request.columns, [](const Field* column) {

@@ -51,6 +51,8 @@ void add_column(std::vector<const Field*>& columns, const Field* column);
 bool wants(const Request& request, std::string_view field);
 /// Whether hoops are to be manufactured: for statistics.
 bool wants_samples(const Request& request);
+/// Whether something is to be proved of the cells of a map.
+bool wants_proofs(const Request& request);
 /// Whether there are derivatives by numbers of [hoop] among the columns.
 bool derives_by_body(const Request& request);
 /// Whether the gaits that jumps converge to are to be found.

@@ -60,6 +60,10 @@ bool is_of_made(std::string_view name) {
   return std::ranges::find(scatter_fields(), name, &Field::name) != scatter_fields().end();
 }
 
+bool is_of_proof(std::string_view name) {
+  return std::ranges::find(proof_fields(), name, &Field::name) != proof_fields().end();
+}
+
 std::vector<std::string_view> differentiable_names() {
   std::vector<std::string_view> names;
   for (const Field& field : map_fields())
@@ -174,10 +178,11 @@ const std::array other_keys{
         {},
         field_names,
         {},
-        [](std::string_view name) { return is_of_jump(name) || is_of_made(name); },
+        [](std::string_view name) { return is_of_jump(name) || is_of_made(name) || is_of_proof(name); },
         "with scene.jumps also jump_height_2, jump_time_2 and so on; with [scatter] also yield, cut_off, "
         "unsolved, and for every quantity _mean, _sd, _q05, _q50, _q95, for example jump_height_mean, each "
-        "also with _error"},
+        "also with _error; without slip also proof, jump_height_low, jump_height_high, jump_time_low, "
+        "jump_time_high: what is proved of each design's cell (leapmap prove)"},
     Option{"output",
            "gradients",
            TextsSlot{[](Spec& s) -> std::vector<std::string>& { return s.output.gradients; }},

@@ -17,6 +17,7 @@
 #include "engine/provenance.hpp"
 #include "map/schema.hpp"
 #include "map/writer.hpp"
+#include "proof/cells.hpp"
 #include "request/request.hpp"
 #include "shards/shard.hpp"
 #include "spec/designs.hpp"
@@ -78,10 +79,14 @@ class Sweeping {
   TileWork work() {
     const auto encoder = std::make_shared<TileEncoder>(layout_, tiling_);
     const auto auditor = audit_ ? std::make_shared<Auditor>(spec_) : nullptr;
+    const auto proofs = wants_proofs(request_of(spec_)) ? std::make_shared<ProofColumns>(spec_) : nullptr;
     const auto drawn = std::make_shared<std::vector<AuditSample>>();  // of the tile in hand
     return {
-        [this, encoder, drawn, auditor](const Tile& tile, std::size_t first, const Solved& solved) {
-          encoder->take(first, solved.outcomes, [&](const Field& field) { return solved.column(field); });
+        [this, encoder, drawn, auditor, proofs](const Tile& tile, std::size_t first, const Solved& solved) {
+          if (proofs) proofs->prove(tiling_, tile, first, solved.outcomes.size());
+          encoder->take(first, solved.outcomes, [&](const Field& field) {
+            return field.of_proof ? proofs->column(field) : solved.column(field);
+          });
           if (auditor)
             std::ranges::copy(audit_samples(spec_, tiling_, tile, first, solved.outcomes, solved.gradients),
                               std::back_inserter(*drawn));
@@ -165,6 +170,7 @@ Report fill(const Spec& spec, const MapLayout& layout, const Tiling& tiling, con
 
 Report sweep(const Spec& spec, const std::string& path, const SweepOptions& asked) {
   check_spec(spec);
+  if (wants_proofs(request_of(spec))) static_cast<void>(Cells(spec));  // before anything is written
   if (!spec.goals.empty() && spec.scatter.spreads.empty())
     throw InputError(
         fmt::format("{}: goal.{} has no effect in a map of nominal hoops; allowed: with a parameter in "

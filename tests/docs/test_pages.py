@@ -56,6 +56,12 @@ def test_a_block_that_prints_something_else_is_found(tmp_path):
     run_blocks.run_console(
         run_blocks.Block("console", "$ echo a few words\na ... words\n", 1, ""), tmp_path, []
     )
+    agrees = "$ echo within 2.6e-14, 0.5 m\nwithin {}, {} m\n"
+    run_blocks.run_console(run_blocks.Block("console", agrees.format("2.5e-14", 0.5), 1, ""), tmp_path, [])
+    for difference, length in (("2.6e-12", 0.5), ("2.6e-14", 0.6)):
+        with pytest.raises(run_blocks.Failed, match="within 2.6e-14"):
+            block = run_blocks.Block("console", agrees.format(difference, length), 1, "")
+            run_blocks.run_console(block, tmp_path, [])
     with pytest.raises(run_blocks.Failed, match="does not compile"):
         run_blocks.run_cpp(
             run_blocks.Block(

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// leapmap prove: enclosures that hold, of designs, of cells of a map, and of all hoops within tolerances.
+#include "leapmap/prove.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <optional>
+
+#include "cli/commands.hpp"
+#include "cli/output.hpp"
+#include "cli/progress.hpp"
+#include "cli/proof_lines.hpp"
+#include "cli/shown_units.hpp"
+#include "cli/spoken.hpp"
+#include "leapmap/errors.hpp"
+#include "leapmap/sweep.hpp"
+#include "leapmap/worst_case.hpp"
+#include "map/writer.hpp"
+#include "proof/cells.hpp"
+#include "proof/judged_map.hpp"
+#include "spec/map_spec.hpp"
+#include "spec/spec_hoop.hpp"
+#include "support/output_file.hpp"
+#include "support/printable.hpp"
+
+namespace leapmap::cli {
+namespace {
+
+struct ProveArguments {
+  std::string input, output;
+  std::vector<std::string> overrides;
+  double share = 0.0;
+  int threads = 0;
+  bool quiet = false, overwrite = false, resume = false;
+  Locking locking = Locking::required;
+};
+
+std::function<bool()> on_signal() {
+  return [] { return noted_signal() != 0; };
+}
+
+/// The designs of a map that is there.
+int prove_map(const ProveArguments& arguments) {
+  constexpr double usual = 20'000.0;  // designs
+  if (!arguments.output.empty())
+    throw InputError("-o: a map's designs are judged, and nothing is written; allowed: with a spec");
+  const MapReader map(arguments.input, arguments.locking);
+  const Spec spec = spec_of(map, arguments.input);
+  const auto designs = static_cast<double>(designs_of(map.shape()));
+  JudgeOptions options{.share = arguments.share > 0.0 ? arguments.share : std::min(1.0, usual / designs),
+                       .threads = arguments.threads,
+                       .stop_requested = on_signal()};
+  std::optional<Progress> progress;
+  options.progress = [&](std::size_t done, std::size_t total) {
+    if (!progress) progress.emplace(total, 0, arguments.quiet);
+    progress->update(done);
+  };
+  note_signals();
+  const JudgedMap judged = judge_map(map, spec, options);
+  progress.reset();
+  for (const std::string& finding : judged.findings) say("WRONG    {}\n", printable(finding));
+  if (judged.wrong > judged.findings.size())
+    say("WRONG    {} designs more\n", grouped(judged.wrong - judged.findings.size()));
+  say("proved   {} of {} designs, of {} in the map: {}\n", grouped(judged.proved), grouped(judged.looked_at),
+      grouped(static_cast<std::size_t>(designs)),
+      judged.wrong == 0 ? "what the map stores lies within each enclosure"
+                        : fmt::format("{} are not what is proved", grouped(judged.wrong)));
+  say("widest   height {:.1e} diameters, time {:.1e} of it\n", judged.widest_height, judged.widest_time);
+  for (const auto& [event, count] : judged.undecided) say("open     {}: {}\n", grouped(count), event);
+  if (judged.failed > 0) say("failed   {} in the map, of which nothing is judged\n", grouped(judged.failed));
+  if (noted_signal() != 0) return 128 + noted_signal();
+  return judged.wrong > 0 ? 1 : 0;
+}
+
+/// The cells of a spec's grid, or the designs of its list, into a map.
+int prove_cells(const ProveArguments& arguments, Spec spec) {
+  for (const Field& field : proof_fields()) {
+    const bool is_of_time =
+        *field.of_proof == ProofColumn::time_low || *field.of_proof == ProofColumn::time_high;
+    if (is_of_time && !spec.axes.empty()) continue;  // told of single designs
+    if (spec.output.fields.empty())
+      spec.output.fields = {"status", "spurious_first_jump", "candidates", "jump_height", "jump_time"};
+    if (std::ranges::find(spec.output.fields, field.name) == spec.output.fields.end())
+      spec.output.fields.emplace_back(field.name);
+  }
+  const std::string map = behind_links(arguments.output);
+  if (map.empty())
+    throw InputError("-o: is not set; allowed: a file for what is proved, for example proof.h5");
+  SweepOptions options{
+      .resume = arguments.resume, .overwrite = arguments.overwrite, .threads = arguments.threads};
+  options.lock = arguments.locking == Locking::required;
+  options.stop_requested = on_signal();
+  std::optional<Progress> progress;
+  options.progress = [&](std::size_t done, std::size_t total) {
+    if (!progress) note_signals(), progress.emplace(total, done, arguments.quiet);
+    progress->update(done);
+  };
+  const Report report = sweep(spec, map, options);
+  progress.reset();
+  if (!report.whole) {
+    tell(fmt::format("interrupted after {} of {} designs, which {} keeps; resume: add --resume",
+                     grouped(report.done), grouped(report.designs), part_of(map)));
+    return 128 + noted_signal();
+  }
+  if (!arguments.quiet)
+    say_findings(MapReader(map, arguments.locking), spec.axes.empty() ? "designs" : "cells");
+  say("map      {}\n", map);
+  return 0;
+}
+
+/// One design, or all hoops within the spec's tolerances.
+int prove_hoops(const ProveArguments& arguments, const Spec& spec) {
+  if (!arguments.output.empty())
+    throw InputError("-o: nothing is written of one design; allowed: with a spec of axes or a list");
+  if (spec.scatter.spreads.empty()) {
+    const Proof proof = prove(spec.design, spec.scene);
+    say("{}", proof_lines(proof, spec));
+    return 0;
+  }
+  WorstCaseOptions options{.threads = arguments.threads, .stop_requested = on_signal()};
+  note_signals();
+  const WorstCase found = worst_case(spec, options);
+  say("{}", worst_case_lines(found, spec));
+  if (noted_signal() != 0) return 128 + noted_signal();
+  return found.answer == WorstCase::Answer::counterexample ? 1 : 0;
+}
+
+int run(const ProveArguments& arguments) {
+  if (arguments.input.ends_with(".h5")) {
+    if (!arguments.overrides.empty()) throw InputError("--set: a map has its own spec; allowed: with a spec");
+    return prove_map(arguments);
+  }
+  if (arguments.share > 0.0) throw InputError("--share: has no effect with a spec; allowed: with a map");
+  const Spec spec = read_given_spec(arguments.input, arguments.overrides);
+  if (spec.axes.empty() && spec.points.empty()) return prove_hoops(arguments, spec);
+  return prove_cells(arguments, spec);
+}
+
+}  // namespace
+
+void add_prove(CommandLine& line, int& status) {
+  Command command = line.command("prove", "prove what becomes of designs, cells and hoops within tolerances");
+  command.examples({{"leapmap prove maps/slope_mass_ratio.h5", "whether its designs are what is proved"},
+                    {"leapmap prove sweeps/slope_mass_ratio.toml -o proof.h5", "each cell of the chart"},
+                    {"leapmap prove --set 'tolerances.slope={uniform=\"1 deg\"}' --set "
+                     "'goal.jump_height={at_least=0.9}'",
+                     "every hoop within tolerances, or one that misses the goal"}});
+  auto arguments = std::make_shared<ProveArguments>();
+  command.value("SPEC|MAP", arguments->input, "a spec (TOML), or a map (.h5); default: the paper's hoop");
+  command.value("-o,--output", arguments->output, "the map of what is proved of each cell")
+      .check(named_file());
+  command.value("--share", arguments->share, "share of a map's designs; default: of 20,000 designs")
+      .check(number({0.0, 1.0, false, true}));
+  add_set(command, arguments->overrides);
+  add_threads(command, arguments->threads);
+  command.flag("--overwrite", arguments->overwrite, "replace the output");
+  command.flag("--resume", arguments->resume, "go on with an interrupted proof");
+  command.flag("-q,--quiet", arguments->quiet, "print errors and the map's name only");
+  add_no_lock(command, arguments->locking);
+  command.footer(
+      "By ball arithmetic (Arb), whose enclosures hold: no sampling, and no rule shared with the solvers. "
+      "The "
+      "model without slip, up to its first jump.\n"
+      "Each cell of a grid is proved (all its designs have one outcome, and jump between two heights), "
+      "crossed "
+      "(two designs in it have different outcomes), or open.\n"
+      "Exit status 1: the map stores what is proved wrong, or a hoop within the tolerances misses a goal.");
+  command.runs([arguments, &status] { status = run(*arguments); });
+}
+
+}  // namespace leapmap::cli

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file
+/// What is proved of a design, or of all designs of a box: enclosures that hold, by ball arithmetic, of the
+/// model without slip up to its first jump. No rule is shared with the solvers that it judges.
+#pragma once
+
+#include <limits>
+#include <string>
+
+#include "leapmap/design.hpp"
+#include "leapmap/outcome.hpp"
+#include "leapmap/scene.hpp"
+
+namespace leapmap {
+
+/// All numbers from low to high; NaN: none are told.
+struct Enclosure {
+  double low = std::numeric_limits<double>::quiet_NaN();
+  double high = std::numeric_limits<double>::quiet_NaN();
+
+  bool holds(double number) const { return low <= number && number <= high; }
+};
+
+/// Each parameter from one value to another.
+struct DesignBox {
+  Design from, to;
+};
+
+/// What holds of every design of a box.
+struct Proof {
+  bool proved = false;  ///< all designs have the one outcome below
+  std::string open{};   ///< if not: what is too near, in words
+  Status status = Status::not_computed;
+  std::uint8_t spurious_first_jump = Outcome::no_lift_off;
+  long lift_offs = 0;  ///< those looked at, the jump included; -1: not as many of each design
+  Enclosure height{};  ///< of the jump [hoop diameters]
+  Enclosure time{};    ///< from release to its lift-off [s]; told of single designs
+  Enclosure first_height{}, first_time{};  ///< of the first lift-off
+};
+
+/// Whether this program was built with Arb, without which prove throws InputError.
+bool can_prove();
+
+/// Proves what becomes of a design. Throws InputError for a design that cannot be, with friction, and for a
+/// program that was built without Arb.
+Proof prove(const Design& design, const Scene& scene = {});
+
+/// The same of all designs of a box, of which up to seven parameters may vary. times: not told.
+Proof prove(const DesignBox& box, const Scene& scene = {});
+
+}  // namespace leapmap

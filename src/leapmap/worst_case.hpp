@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file
+/// The worst hoop within tolerances, proved.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "leapmap/prove.hpp"
+#include "leapmap/spec.hpp"
+
+namespace leapmap {
+
+/// What is proved of all hoops within the uniform tolerances of a spec.
+struct WorstCase {
+  enum class Answer {
+    proved,          ///< every hoop reaches every goal; without goals: every hoop jumps
+    counterexample,  ///< one does not
+    open             ///< neither is known yet
+  };
+  Answer answer = Answer::open;
+  std::string open{};             ///< if open: what is too near, in words
+  Enclosure height{};             ///< of the lowest jump [hoop diameters]; NaN: some hoop does not jump
+  std::optional<Design> worst{};  ///< the lowest jump found, or the hoop that misses a goal
+  Outcome outcome{};              ///< of it
+  long boxes = 0;                 ///< that were looked at
+};
+
+struct WorstCaseOptions {
+  int threads = 0;                         ///< 0: as many as OpenMP offers
+  long most_boxes = 40'000;                ///< what is then not known stays open
+  double resolution = 1e-3;                ///< how far the lowest height may stay unknown [hoop diameters]
+  std::function<bool()> stop_requested{};  ///< asked now and then; true: what is known by then is returned
+};
+
+/// Proves whether every hoop within the tolerances reaches the goals, and encloses the height of the lowest
+/// jump. Throws InputError for tolerances that are not uniform or of numbers of [hoop], for goals but those
+/// of jump_height, status, spurious_first_jump and candidates, and as prove does.
+WorstCase worst_case(const Spec& spec, const WorstCaseOptions& options = {});
+
+}  // namespace leapmap

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "leapmap/prove.hpp"
+
+#include <fmt/format.h>
+
+#include "leapmap/errors.hpp"
+#include "model/parameters.hpp"
+#include "proof/walk.hpp"
+
+namespace leapmap {
+namespace {
+
+/// What a proof is about: all that acts without slip.
+constexpr std::array<double Design::*, 8> acting{
+    &Design::slope,         &Design::mass_ratio,   &Design::offset_ratio, &Design::inertia_factor,
+    &Design::release_angle, &Design::release_spin, &Design::drive_torque, &Design::resisting_torque};
+
+template <std::size_t N>
+Proof walk(const DesignBox& box, const std::vector<double Design::*>& varying, const Scene& scene) {
+  // What does not vary stands for what is left over: its reach is none.
+  std::array<double Design::*, N> members;
+  for (std::size_t k = 0, other = 0; k < N; ++k) {
+    if (k < varying.size()) {
+      members[k] = varying[k];
+      continue;
+    }
+    while (std::ranges::find(varying, acting[other]) != varying.end()) ++other;
+    members[k] = acting[other++];
+  }
+  try {
+    return Walk<N>(box, members, scene).prove();
+  } catch (const Undecided& undecided) {
+    return {.open = undecided.event};
+  }
+}
+
+}  // namespace
+
+bool can_prove() { return true; }
+
+Proof prove(const DesignBox& box, const Scene& scene) {
+  check_scene(scene);
+  check_design(box.from, scene), check_design(box.to, scene);
+  if (scene.friction != Friction::sticking)
+    throw InputError("friction = coulomb: nothing can be proved with friction; allowed: sticking");
+  std::vector<double Design::*> varying;
+  for (const auto member : acting)
+    if (box.from.*member != box.to.*member) varying.push_back(member);
+  switch (varying.size()) {
+    case 0:
+      return walk<0>(box, varying, scene);
+    case 1:
+      return walk<1>(box, varying, scene);
+    case 2:
+      return walk<2>(box, varying, scene);
+    case 3:
+      return walk<3>(box, varying, scene);
+    case 8:
+      throw InputError("a box in eight parameters cannot be proved; allowed: up to seven");
+    default:
+      return walk<7>(box, varying, scene);
+  }
+}
+
+Proof prove(const Design& design, const Scene& scene) { return prove(DesignBox{design, design}, scene); }
+
+}  // namespace leapmap
