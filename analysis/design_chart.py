@@ -7,7 +7,7 @@ Isolines are labelled. Hatched: first lift-off below the threshold. Lines: disco
 boundaries has found them; without them, one cell for each design. Other colours: no jump, by the reason. A
 star marks the paper's hoop. Agility is the jump's height over the time from release to its apex; the colour
 bar marks published jumpers. Agility needs jump_height, jump_time and apex_time. spurious_first_jump,
-jump_angle and status are drawn if the map has them."""
+jump_angle and status are drawn if the map has them, and what leapmap prove has proved of its cells."""
 import sys
 
 import numpy as np
@@ -185,6 +185,9 @@ def main():
         beside = units_in_own and not arguments.units
         drawing = looks.in_drawing(m, name, units_in_own) if beside else None
         style.save(chart(grid, name, panels_of, drawing), f"{style.stem(arguments.output)}_{name}")
+    if "proof" in m.fields:
+        from proof_chart import chart as proved  # which draws with what is above
+        style.save(proved(grid, curves), f"{style.stem(arguments.output)}_proof")
 
 
 if __name__ == "__main__":

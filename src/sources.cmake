@@ -128,7 +128,6 @@ set(LEAPMAP_SOURCES
   src/numerics/sobol_sequence.cpp
   src/hoop/body.cpp
   src/proof/cells.cpp
-  src/proof/judged_map.cpp
   src/proof/worst_case.cpp
   src/referee/flight.cpp
   src/referee/motion.cpp
@@ -169,6 +168,7 @@ set(LEAPMAP_SOURCES
   src/support/stop.cpp
   src/support/wrapped.cpp
   src/sweep/check.cpp
+  src/sweep/judged_map.cpp
   src/sweep/map_file.cpp
   src/sweep/retry.cpp
   src/sweep/sweep.cpp

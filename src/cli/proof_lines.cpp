@@ -35,7 +35,7 @@ std::string in_diameters(const Enclosure& height, const Spec& spec) {
 }  // namespace
 
 std::string proof_lines(const Proof& proof, const Spec& spec) {
-  if (!proof.proved) return fmt::format("Nothing is proved: {} is too near to tell.\n", proof.open);
+  if (!proof.proved) return fmt::format("Nothing is proved: {} is too near.\n", proof.open);
   std::string lines = fmt::format("Proved: {}", name_of(proof.status));
   if (proof.status == Status::jumped)
     lines += fmt::format(" at lift-off {}", proof.lift_offs);
@@ -77,8 +77,8 @@ std::string worst_case_lines(const WorstCase& found, const Spec& spec) {
       found.answer == WorstCase::Answer::proved
           ? fmt::format("Proved: every hoop within the tolerances {} ({}).\n", what, boxes)
           : fmt::format(
-                "Open after {}: {} is too near to tell whether every hoop within the tolerances {}.\n", boxes,
-                found.open, what);
+                "Open after {}: {} is too near to decide whether every hoop within the tolerances {}.\n",
+                boxes, found.open, what);
   if (!std::isnan(found.height.low))
     lines += fmt::format("The lowest jump lies in {}.\nNearest to it: {}\n", in_diameters(found.height, spec),
                          command);

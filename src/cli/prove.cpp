@@ -18,11 +18,11 @@
 #include "leapmap/worst_case.hpp"
 #include "map/writer.hpp"
 #include "proof/cells.hpp"
-#include "proof/judged_map.hpp"
 #include "spec/map_spec.hpp"
 #include "spec/spec_hoop.hpp"
 #include "support/output_file.hpp"
 #include "support/printable.hpp"
+#include "sweep/judged_map.hpp"
 
 namespace leapmap::cli {
 namespace {
@@ -143,19 +143,18 @@ void add_prove(CommandLine& line, int& status) {
   Command command = line.command("prove", "prove what becomes of designs, cells and hoops within tolerances");
   command.examples({{"leapmap prove maps/slope_mass_ratio.h5", "whether its designs are what is proved"},
                     {"leapmap prove sweeps/slope_mass_ratio.toml -o proof.h5", "each cell of the chart"},
-                    {"leapmap prove --set 'tolerances.slope={uniform=\"1 deg\"}' --set "
-                     "'goal.jump_height={at_least=0.9}'",
-                     "every hoop within tolerances, or one that misses the goal"}});
+                    {"leapmap prove --set 'tolerances.slope={uniform=\"1 deg\"}'",
+                     "whether every hoop within the tolerance jumps"}});
   auto arguments = std::make_shared<ProveArguments>();
   command.value("SPEC|MAP", arguments->input, "a spec (TOML), or a map (.h5); default: the paper's hoop");
   command.value("-o,--output", arguments->output, "the map of what is proved of each cell")
       .check(named_file());
-  command.value("--share", arguments->share, "share of a map's designs; default: of 20,000 designs")
+  command.value("--share", arguments->share, "fraction of a map's designs; default: 20,000 designs")
       .check(number({0.0, 1.0, false, true}));
   add_set(command, arguments->overrides);
   add_threads(command, arguments->threads);
   command.flag("--overwrite", arguments->overwrite, "replace the output");
-  command.flag("--resume", arguments->resume, "go on with an interrupted proof");
+  command.flag("--resume", arguments->resume, "continue an interrupted proof");
   command.flag("-q,--quiet", arguments->quiet, "print errors and the map's name only");
   add_no_lock(command, arguments->locking);
   command.footer(

@@ -13,7 +13,7 @@
 
 namespace leapmap {
 
-/// All numbers from low to high; NaN: none are told.
+/// All numbers from low to high; NaN: not known.
 struct Enclosure {
   double low = std::numeric_limits<double>::quiet_NaN();
   double high = std::numeric_limits<double>::quiet_NaN();
@@ -32,9 +32,9 @@ struct Proof {
   std::string open{};   ///< if not: what is too near, in words
   Status status = Status::not_computed;
   std::uint8_t spurious_first_jump = Outcome::no_lift_off;
-  long lift_offs = 0;  ///< those looked at, the jump included; -1: not as many of each design
+  long lift_offs = 0;  ///< up to the jump, which is included; -1: the number differs between designs
   Enclosure height{};  ///< of the jump [hoop diameters]
-  Enclosure time{};    ///< from release to its lift-off [s]; told of single designs
+  Enclosure time{};    ///< from release to its lift-off [s]; known of single designs only
   Enclosure first_height{}, first_time{};  ///< of the first lift-off
 };
 
@@ -45,7 +45,7 @@ bool can_prove();
 /// program that was built without Arb.
 Proof prove(const Design& design, const Scene& scene = {});
 
-/// The same of all designs of a box, of which up to seven parameters may vary. times: not told.
+/// The same of all designs of a box, of which up to seven parameters may vary. Times are not enclosed.
 Proof prove(const DesignBox& box, const Scene& scene = {});
 
 }  // namespace leapmap

@@ -24,11 +24,11 @@ struct WorstCase {
   Enclosure height{};             ///< of the lowest jump [hoop diameters]; NaN: some hoop does not jump
   std::optional<Design> worst{};  ///< the lowest jump found, or the hoop that misses a goal
   Outcome outcome{};              ///< of it
-  long boxes = 0;                 ///< that were looked at
+  long boxes = 0;                 ///< evaluated
 };
 
 struct WorstCaseOptions {
-  int threads = 0;                         ///< 0: as many as OpenMP offers
+  int threads = 0;                         ///< number of threads; 0: all that OpenMP offers
   long most_boxes = 40'000;                ///< what is then not known stays open
   double resolution = 1e-3;                ///< how far the lowest height may stay unknown [hoop diameters]
   std::function<bool()> stop_requested{};  ///< asked now and then; true: what is known by then is returned

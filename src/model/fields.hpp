@@ -91,9 +91,9 @@ struct Field {
   bool of_sequence = false;           ///< of scenes with more jumps than one
   bool of_gait = false;               ///< of scenes that look for gaits
   ByDefault by_default = ByDefault::stored;
-  bool of_wall = false;           ///< of scenes with a clear_height
-  bool of_way = false;            ///< of the way to a jump, for which the design is solved once more
-  bool Wanted::*needs = nullptr;  ///< what a solver has to be asked for; nullptr: nothing
+  bool of_wall = false;                   ///< of scenes with a clear_height
+  bool of_way = false;                    ///< of the way to a jump, for which the design is solved once more
+  bool Wanted::*needs = nullptr;          ///< what a solver has to be asked for; nullptr: nothing
   std::optional<ProofColumn> of_proof{};  ///< what it tells of what is proved
 };
 

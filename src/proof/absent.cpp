@@ -10,7 +10,7 @@ Proof prove(const DesignBox&, const Scene&) {
   throw InputError(
       "this leapmap was built without Arb, with which proofs compute; allowed: with libflint-arb-dev "
       "(Debian), "
-      "and built anew");
+      "and compiled again");
 }
 
 Proof prove(const Design& design, const Scene& scene) { return prove(DesignBox{design, design}, scene); }

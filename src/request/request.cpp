@@ -131,7 +131,8 @@ bool wants(const Request& request, std::string_view field) {
 bool wants_samples(const Request& request) { return std::ranges::any_of(request.columns, is_statistic); }
 
 bool wants_proofs(const Request& request) {
-  return std::ranges::any_of(request.columns, [](const Field* column) { return column->of_proof.has_value(); });
+  return std::ranges::any_of(request.columns,
+                             [](const Field* column) { return column->of_proof.has_value(); });
 }
 
 bool derives_by_body(const Request& request) {

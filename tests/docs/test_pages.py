@@ -124,7 +124,7 @@ def test_help_fits_eighty_columns_and_begins_with_examples():
     names = re.findall(
         r"^  ([a-z]+) ", leapmap("--help").stdout.split("Commands:\n")[1].split("\n\n")[0], re.M
     )
-    assert len(names) == 12
+    assert len(names) == 13
     for words in ((), *((name,) for name in names)):
         shown = leapmap(*words, "--help").stdout
         assert max(map(len, shown.splitlines())) <= 80, words

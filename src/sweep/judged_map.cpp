@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "proof/judged_map.hpp"
+#include "sweep/judged_map.hpp"
 
 #include <fmt/format.h>
 
@@ -74,7 +74,11 @@ JudgedMap judge_map(const MapReader& map, const Spec& spec, const JudgeOptions& 
   const Cells cells(spec);
   const DesignSpace space(spec);
   const Tiling tiling = map.blocks("status");
-  const Solver solver = make_solver(request_of(spec));
+  Request request = request_of(spec);  // what the map does not store is the solver's
+  for (const std::string_view name : {"status", "spurious_first_jump", "candidates", "jump_height",
+                                      "jump_time", "first_jump_height", "first_jump_time"})
+    add_column(request.columns, find_field(name));
+  const Solver solver = make_solver(request);
   const double allowed = begin_audit(spec).allowed_error;
   const auto total =
       static_cast<std::size_t>(std::ceil(options.share * static_cast<double>(tiling.designs())));

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""leapmap prove: maps are judged, cells and hoops within tolerances proved, and what cannot be is refused."""
+import json
+import re
+
+import h5py
+import numpy as np
+import pytest
+from support.program import TOP, leapmap, sweep
+
+WITHIN = [
+    w for key, law in (("slope", '{uniform="1 deg"}'), ("mass_ratio", '{uniform="2 %"}'),
+                       ("release_angle", '{uniform="3 deg"}')) for w in ("--set", f"tolerances.{key}={law}")
+]
+SMALL = """
+[design]
+slope = { from = "20 deg", to = "24 deg", count = 9 }
+mass_ratio = { from = 2.3, to = 2.6, count = 7 }
+[numerics]
+audit = 0
+"""
+
+
+def test_a_design_s_height_and_time_are_enclosed():
+    told = json.loads(leapmap("hop", "--prove", "--json").stdout)
+    proof = told["proof"]
+    assert proof["proved"] and proof["status"] == "jumped" and proof["lift_offs"] == 2
+    for name in ("jump_height", "jump_time", "first_jump_height", "first_jump_time"):
+        low, high = proof[name]
+        # the solver's own rounding is of the size of the enclosure
+        assert low - 1e-12 <= told[name] <= high + 1e-12 and high - low < 1e-10, name
+    assert "Proved: jumped at lift-off 2." in leapmap("prove").stdout
+
+
+def test_a_map_is_what_is_proved_until_a_number_of_it_is_changed(tmp_path):
+    path = sweep(tmp_path, SMALL)
+    right = leapmap("prove", path)
+    assert right.returncode == 0 and "proved   63 of 63 designs" in right.stdout, right.stdout
+    with h5py.File(path, "r+") as m:
+        height = m["jump_height"][()]
+        height[4, 3] *= 1 + 1e-9
+        m["jump_height"][...] = height
+    wrong = leapmap("prove", path)
+    assert wrong.returncode == 1
+    assert re.search(r"WRONG    design 31: jump_height \S+ outside the proved \[.*leapmap hop", wrong.stdout)
+    share = leapmap("prove", path, "--share", "0.1")
+    assert "of 7 designs, of 63 in the map" in share.stdout
+
+
+def test_cells_of_a_grid_are_proved_and_hold_their_designs(tmp_path):
+    (tmp_path / "s.toml").write_text(SMALL, encoding="utf-8")
+    done = leapmap("prove", tmp_path / "s.toml", "-o", tmp_path / "p.h5")
+    assert done.returncode == 0, done.stderr
+    with h5py.File(tmp_path / "p.h5") as m:
+        proof, low, high = (m[name][()] for name in ("proof", "jump_height_low", "jump_height_high"))
+        assert m["proof"].dtype == np.uint8
+        assert m["proof"].attrs["flag_meanings"] == "not_computed proved crossed open"
+        height = m["jump_height"][()]
+        assert "jump_time_low" not in m, "times are enclosed of single designs"
+    assert set(np.unique(proof)) <= {1, 2, 3} and (proof == 1).mean() > 0.9
+    assert (np.isnan(low) == (proof != 1)).all(), "all of this chart jumps"
+    assert ((low <= height) & (height <= high))[proof == 1].all()
+    assert leapmap("check", tmp_path / "p.h5").returncode == 0
+    told = leapmap("info", tmp_path / "p.h5").stdout
+    assert re.search(r"proof\n +\d+ +proved", told) or "proved" in told
+    again = leapmap("prove", tmp_path / "s.toml", "-o", tmp_path / "p.h5")
+    assert again.returncode == 2 and "--overwrite" in again.stderr
+
+
+def test_designs_of_a_list_have_enclosures_of_their_times(tmp_path):
+    (tmp_path / "d.csv").write_text("slope,mass_ratio\n0.4,2.4\n0.3,0.1\n", encoding="utf-8")
+    (tmp_path / "s.toml").write_text('[design]\npoints = "d.csv"\n[numerics]\naudit = 0\n', encoding="utf-8")
+    assert leapmap("prove", tmp_path / "s.toml", "-o", tmp_path / "p.h5").returncode == 0
+    with h5py.File(tmp_path / "p.h5") as m:
+        assert (m["proof"][()] == 1).all()
+        low, high, time = (m[name][()] for name in ("jump_time_low", "jump_time_high", "jump_time"))
+    assert low[0] - 1e-12 <= time[0] <= high[0] + 1e-12 and np.isnan(low[1]) and np.isnan(time[1])
+
+
+def test_all_hoops_within_tolerances_are_proved_or_one_misses():
+    proved = leapmap("prove", *WITHIN, "--set", "goal.jump_height={at_least=0.9}")
+    assert proved.returncode == 0, proved.stderr
+    assert proved.stdout.startswith("Proved: every hoop within the tolerances reaches every goal (")
+    low, high = map(float, re.search(r"lies in \[(.*), (.*)\] diameters", proved.stdout).groups())
+    assert 0.9 < low <= high < low + 2e-3
+    missed = leapmap("prove", *WITHIN, "--set", "goal.jump_height={at_least=0.921}")
+    assert missed.returncode == 1 and missed.stdout.startswith("Counterexample: ")
+    command = re.search(r"leapmap (hop .*)", missed.stdout)[1].split()
+    assert json.loads(leapmap(*command, "--json").stdout)["jump_height"] < 0.921
+    sampled = json.loads(leapmap("hop", *WITHIN, "--set", "goal.jump_height={at_least=0.921}", "--scatter",
+                                 "--json").stdout)
+    assert sampled["scatter"]["yield"]["value"] == 1.0, "a thousand hoops do not find it"
+
+
+@pytest.mark.parametrize("arguments, words", [
+    (["--set", "friction=coulomb"], ["friction", "sticking"]),
+    (['--set', 'tolerances.slope={normal="1 deg"}'], ["tolerances.slope", "uniform"]),
+    ([*WITHIN, "--set", "goal.flight_time={at_least=0.1}"], ["goal.flight_time", "jump_height"]),
+    ([TOP / "sweeps" / "smoke.toml"], ["-o", "proof.h5"]),
+    (["--share", "0.5"], ["--share", "with a map"]),
+    ([TOP / "sweeps" / "drawing.toml", "--set", "friction=sticking", "--set",
+      'hoop.slug.mass={from="80 g",to="90 g",count=3}', "-o", "never.h5"], ["hoop.slug.mass", "mass_ratio"]),
+])
+def test_what_cannot_be_proved_is_refused_in_a_line(arguments, words):
+    refused = leapmap("prove", *arguments)
+    assert refused.returncode == 2 and refused.stderr.count("allowed:") == 1, refused.stderr
+    for word in words:
+        assert word in refused.stderr, refused.stderr
