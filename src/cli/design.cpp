@@ -17,6 +17,7 @@
 #include "cli/json.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
+#include "cli/proof_lines.hpp"
 #include "cli/shown_units.hpp"
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
@@ -162,6 +163,7 @@ void print_design(Report& report, const FoundDesign& found, std::size_t number) 
   if (!std::isnan(found.yield.value))
     say("     yield {:.4f} +- {:.4f}, from {} fresh manufactured hoops\n", found.yield.value,
         found.yield.error, question.one.scatter.samples);
+  if (found.worst) say("     {}\n", worst_case_line(*found.worst));
   std::string binds = fmt::format("{}", fmt::join(found.binds, "; "));
   if (const std::size_t at = binds.find("cliff ("); at != std::string::npos)
     binds.replace(at, 5, "discontinuity");
@@ -269,6 +271,7 @@ Json json_of(const Question& question, const FoundDesign& found) {
       {"objectives", Json::object()},
       {"fields", Json::object()},
       {"gradients", Json::object()},
+      {"worst_case", found.worst ? worst_case_json(*found.worst) : Json()},
       {"binds", found.binds},
       {"cliff",
        near ? Json{{"distance", found.cliff[0].distance}, {"kind", name_of(found.cliff[0].kind)}} : Json()},
@@ -433,7 +436,8 @@ void add_design(CommandLine& line, int& status) {
       "  spurious_first_jump = { is = 0 }\n"
       "  minimize = [\"mass_ratio\"]\n"
       "Two objectives give a Pareto front. With [scatter], yield may be a goal or an objective: the fraction "
-      "of manufactured hoops that reach all the other goals.\n"
+      "of manufactured hoops that reach all the other goals; and worst_case, the least jump height within "
+      "uniform tolerances, which is proved of the designs found.\n"
       "Exit status 1: no design meets all goals; the nearest miss is reported and no file is written.");
   command.runs([arguments, &status] { status = run(*arguments); });
 }

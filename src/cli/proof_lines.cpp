@@ -85,6 +85,22 @@ std::string worst_case_lines(const WorstCase& found, const Spec& spec) {
   return lines;
 }
 
+std::string worst_case_line(const WorstCase& found) {
+  if (!std::isnan(found.height.low))
+    return fmt::format("worst case: proved, the lowest jump within the tolerances lies in {} diameters",
+                       told(found.height));
+  return found.answer == WorstCase::Answer::counterexample
+             ? "worst case: a hoop within the tolerances does not jump, or misses a goal"
+             : fmt::format("worst case: open, {} is too near", found.open);
+}
+
+Json worst_case_json(const WorstCase& found) {
+  const bool known = !std::isnan(found.height.low);
+  return {{"proved", found.answer == WorstCase::Answer::proved},
+          {"jump_height", known ? Json::array({found.height.low, found.height.high}) : Json()},
+          {"open", found.open}};
+}
+
 void say_findings(const MapReader& map, std::string_view of) {
   const Field& field = *find_field("proof");
   const auto& names = std::get<Code>(field.source).names;

@@ -20,6 +20,10 @@ Json proof_json(const Proof& proof);
 /// Of all hoops within tolerances; the worst of them as a command.
 std::string worst_case_lines(const WorstCase& found, const Spec& spec);
 
+/// The same in one line, and as JSON.
+std::string worst_case_line(const WorstCase& found);
+Json worst_case_json(const WorstCase& found);
+
 /// How many cells, or designs, of a map are proved, crossed or open.
 void say_findings(const MapReader& map, std::string_view of);
 

@@ -244,7 +244,7 @@ std::vector<std::string> binding(const Question& question, const Place& place, c
       binds.push_back(fmt::format("{} at most {:.6g}{}", goal.field, goal.at_most, si));
   }
   for (const Goal& goal : question.made_goals)  // a hoop more or less is nothing
-    if (std::abs(found.yield.value - goal.at_least) <= 3.0 * found.yield.error)
+    if (goal.field == "yield" && std::abs(found.yield.value - goal.at_least) <= 3.0 * found.yield.error)
       binds.push_back(fmt::format("{} at least {:.6g}", goal.field, goal.at_least));
   if (!found.cliff.empty() && found.cliff[0].distance < on)
     binds.push_back(fmt::format("cliff ({})", name_of(found.cliff[0].kind)));
@@ -323,6 +323,21 @@ void tell(const Judge& judge, const std::vector<Place>& places, const FindOption
     if (stays[i]) found.designs.push_back(std::move(told[i]));
 }
 
+/// Proves the worst hoops of what was found; where that is not known, the least height that was met stays.
+void prove_worst(const Question& question, const FindOptions& options, FoundDesigns& found) {
+  constexpr long most_boxes = 4000;  // some seconds a design
+  for (FoundDesign& one : found.designs) {
+    Spec within = question.one;
+    within.design = one.design;
+    one.worst = worst_case(
+        within,
+        {.threads = options.threads, .most_boxes = most_boxes, .stop_requested = options.stop_requested});
+    for (std::size_t k = 0; k < question.objectives.size(); ++k)
+      if (question.objectives[k].name == "worst_case" && !std::isnan(one.worst->height.low))
+        one.objectives[k] = one.worst->height.low;
+  }
+}
+
 }  // namespace
 
 Spec list_of(const Spec& spec, const FoundDesigns& found) {
@@ -364,6 +379,7 @@ FoundDesigns find_designs(const Spec& spec, const FindOptions& asked) {
                                         : best_places(judge, effort, options, steps);
   found.reached = places.front().verdict.feasible();
   tell(judge, places, options, found);
+  if (asks_for_worst_case(question)) prove_worst(question, options, found);
   if (found.designs.empty()) {  // none holds alone: the goals leave no room for a rounding
     found.reached = false;
     tell(judge, {places.front()}, options, found);
@@ -371,8 +387,9 @@ FoundDesigns find_designs(const Spec& spec, const FindOptions& asked) {
   if (!found.reached) {
     found.designs.resize(1);
     for (const Goal& goal : spec.goals)
-      found.missed.push_back(goal.field == "yield"
-                                 ? found.designs[0].yield.value
+      found.missed.push_back(goal.field == "yield" ? found.designs[0].yield.value
+                             : goal.field == "worst_case"
+                                 ? found.designs[0].worst->height.low
                                  : goal_check(goal).value(found.designs[0].design, found.designs[0].outcome));
   }
   found.evaluations = judge.evaluations();

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "leapmap/errors.hpp"
+#include "leapmap/worst_case.hpp"
 #include "model/model.hpp"
 #include "spec/options.hpp"
 
@@ -62,6 +63,7 @@ Range possible(const Field& field, const Scene& scene) {
   if (field.name == "jump_height") return {scene.hop_height, infinity};
   if (field.name == "dip") return {-infinity, 0.0};
   if (field.name == "yield") return {0.0, 1.0};
+  if (field.name == "worst_case") return {0.0, infinity};
   const auto* quantity = std::get_if<Quantity>(&field.source);
   const bool positive = (quantity && quantity->measure != Measure::other) ||
                         std::holds_alternative<Code>(field.source) || field.name == "slip_distance";
@@ -102,6 +104,12 @@ void refuse_contradictions(const Spec& spec, const std::vector<Objective>& objec
 }
 
 }  // namespace
+
+bool asks_for_worst_case(const Question& question) {
+  constexpr std::string_view name = "worst_case";
+  return std::ranges::find(question.made_goals, name, &Goal::field) != question.made_goals.end() ||
+         std::ranges::find(question.objectives, name, &Objective::name) != question.objectives.end();
+}
 
 Scatter fresh_samples(const Scatter& scatter) {
   Scatter fresh = scatter;
@@ -196,11 +204,13 @@ Question question_of(const Spec& spec) {
            fmt::format("goal.maximize and goal.minimize name {} quantities", question.objectives.size()),
            "one, or two for a Pareto front");
   const auto of_yield = [&](const auto& asked) { return asked.field && asked.field->name == "yield"; };
-  if ((std::ranges::any_of(question.objectives, of_yield) || !question.made_goals.empty()) &&
+  if ((std::ranges::any_of(question.objectives, of_yield) ||
+       std::ranges::find(question.made_goals, "yield", &Goal::field) != question.made_goals.end()) &&
       question.one.goals.empty())
     refuse(spec, "yield is the fraction of hoops that reach every goal, and there is no other goal",
            "with another field in [goal]");
   refuse_contradictions(spec, question.objectives);
+  if (asks_for_worst_case(question)) check_worst_case(question.one);
   return question;
 }
 

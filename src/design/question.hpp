@@ -47,6 +47,9 @@ struct Question {
   Spec grid() const;
 };
 
+/// Whether a goal or an objective is the worst hoop within the tolerances, which is proved of what is found.
+bool asks_for_worst_case(const Question& question);
+
 /// Other samples than those of the search, which has favoured designs that do well with its own: for the
 /// report.
 Scatter fresh_samples(const Scatter& scatter);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "leapmap/estimate.hpp"
 #include "leapmap/outcome.hpp"
 #include "leapmap/spec.hpp"
+#include "leapmap/worst_case.hpp"
 
 namespace leapmap {
 
@@ -33,6 +35,7 @@ struct FoundDesign {
   Outcome outcome{};                 ///< its nominal outcome
   std::vector<double> objectives{};  ///< in the spec's order, those to maximize first, in their own units
   Estimate yield{};  ///< with [scatter] and goals: fraction of manufactured hoops that reach all goals
+  std::optional<WorstCase> worst{};  ///< if worst_case is a goal or an objective: what is proved of it
   std::vector<std::string> binds{};  ///< active constraints in words: bounds, goals, discontinuities
   // With one objective:
   std::vector<NearCliff> cliff{};          ///< the nearest discontinuity within the bounds, if any

@@ -34,6 +34,9 @@ struct WorstCaseOptions {
   std::function<bool()> stop_requested{};  ///< asked now and then; true: what is known by then is returned
 };
 
+/// Throws InputError for a spec of which no worst case can be proved.
+void check_worst_case(const Spec& spec);
+
 /// Proves whether every hoop within the tolerances reaches the goals, and encloses the height of the lowest
 /// jump. Throws InputError for tolerances that are not uniform or of numbers of [hoop], for goals but those
 /// of jump_height, status, spurious_first_jump and candidates, and as prove does.

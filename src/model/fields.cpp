@@ -407,6 +407,11 @@ struct ScatterTable {
       add(Statistic::q50, &field, "q50", "median", true);
       add(Statistic::q95, &field, "q95", "95 % quantile", true);
     }
+    rows.push_back(
+        {"worst_case", OfMade{Statistic::worst_case, &Outcome::jump_height, false}, "1",
+         "least jump height of manufactured hoops and of the corners of uniform tolerances, in hoop "
+         "diameters; 0: one does not jump",
+         17, Friction::sticking});
   }
 };
 

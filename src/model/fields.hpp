@@ -56,7 +56,7 @@ struct Derivative {
 };
 
 /// What is told of the hoops made after a drawing, of those that jump where it is of a quantity.
-enum class Statistic : std::uint8_t { yield, cut_off, unsolved, mean, sd, q05, q50, q95 };
+enum class Statistic : std::uint8_t { yield, cut_off, unsolved, mean, sd, q05, q50, q95, worst_case };
 
 /// One of these, or its standard error, stored as f8.
 struct OfMade {

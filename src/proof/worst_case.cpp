@@ -90,7 +90,9 @@ DesignBox box_of(const Spec& spec, std::vector<double Design::*>& varying) {
   return box;
 }
 
-void check(const Spec& spec) {
+}  // namespace
+
+void check_worst_case(const Spec& spec) {
   if (spec.scene.friction != Friction::sticking)
     throw InputError(fmt::format(
         "{}: friction = coulomb: nothing can be proved with friction; allowed: sticking", origin_of(spec)));
@@ -98,7 +100,11 @@ void check(const Spec& spec) {
     if (std::ranges::find(provable, goal.field) == provable.end())
       throw InputError(fmt::format("{}: goal.{}: nothing can be proved of it; allowed: {}", origin_of(spec),
                                    goal.field, fmt::join(provable, ", ")));
+  std::vector<double Design::*> varying;
+  static_cast<void>(box_of(spec, varying));
 }
+
+namespace {
 
 class Search {
  public:
@@ -239,7 +245,7 @@ class Search {
 }  // namespace
 
 WorstCase worst_case(const Spec& spec, const WorstCaseOptions& options) {
-  check(spec);
+  check_worst_case(spec);
   return Search(spec, options).run();
 }
 

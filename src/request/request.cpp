@@ -21,6 +21,7 @@ constexpr double Outcome::*usual[]{&Outcome::jump_height, &Outcome::jump_time};
 bool is_asked_for(const Spec& spec, const Field& row) {
   if (std::ranges::find(spec.output.fields, row.name) != spec.output.fields.end()) return true;
   const OfMade& made = std::get<OfMade>(row.source);
+  if (made.statistic == Statistic::worst_case) return false;
   if (!made.of) return made.statistic != Statistic::yield || !spec.goals.empty();
   if (made.error) return false;
   if (spec.output.fields.empty()) return std::ranges::find(usual, made.of) != std::end(usual);

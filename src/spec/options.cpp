@@ -312,6 +312,7 @@ std::vector<Option> all_options() {
       for (const Field& field : map_fields()) all.push_back(goal_of(field));
     if (section == "goal") {
       all.push_back(goal_of(*find_field("yield")));
+      all.push_back(goal_of(*find_field("worst_case")));
       all.push_back(objective(
           "maximize", [](Spec& s) -> std::vector<std::string>& { return s.maximize; },
           "leapmap design: objectives to maximize; with minimize one or two in all"));

@@ -70,7 +70,8 @@ std::string options_help() {
           "  jump_height = { at_least = 0.8 }, { at_most = 0.6 }, both, or { is = 0 }\n"
           "Goals, for any field of a nominal hoop, in its unit; angles also as \"700 deg\", codes by number "
           "or name, a phase_sequence as \"RSF\". leapmap design also takes yield, the fraction of "
-          "manufactured hoops that reach all the other goals.\n";
+          "manufactured hoops that reach all the other goals, and worst_case, the least jump height within "
+          "uniform tolerances.\n";
     if (spread || goal) continue;
     const bool axis = std::holds_alternative<ParameterSlot>(option.slot);
     const std::string unit =

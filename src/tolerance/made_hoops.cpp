@@ -118,16 +118,16 @@ void MadeHoops::take_body(const Body& made, const ReducedBody& nominal, Design& 
   hold_in_si(same_in_si, heavier, larger, design);
 }
 
-void MadeHoops::fill(std::size_t first, std::span<Design> made) const {
+template <class Deviation>
+void MadeHoops::make(std::span<Design> made, const Deviation& deviation) const {
   std::fill(made.begin(), made.end(), drawn_);
   for (std::size_t k = 0; k < spreads_.size(); ++k) {
     const Made& spread = spreads_[k];
     double Design::*const member = spread.variable.parameter();
     if (!member) continue;
     const double value = value_drawn(spread, drawn_, body_), width = width_of(spread, drawn_, body_);
-    const double* deviation = now_[k]->data() + first;
     for (std::size_t i = 0; i < made.size(); ++i)
-      made[i].*member = inside(spread.variable.range, value + width * deviation[i]);
+      made[i].*member = inside(spread.variable.range, value + width * deviation(k, i));
   }
   if (!makes_bodies_) return;
   const ReducedBody nominal = reduce_checked(body_);
@@ -137,11 +137,23 @@ void MadeHoops::fill(std::size_t first, std::span<Design> made) const {
       const Made& spread = spreads_[k];
       if (!spread.variable.of_body()) continue;
       const double value = value_drawn(spread, drawn_, body_), width = width_of(spread, drawn_, body_);
-      spread.variable.in(made[i], body) =
-          inside(spread.variable.range, value + width * (*now_[k])[first + i]);
+      spread.variable.in(made[i], body) = inside(spread.variable.range, value + width * deviation(k, i));
     }
     take_body(body, nominal, made[i]);
   }
+}
+
+void MadeHoops::fill(std::size_t first, std::span<Design> made) const {
+  make(made, [&](std::size_t k, std::size_t i) { return (*now_[k])[first + i]; });
+}
+
+void MadeHoops::corners(std::vector<Design>& made) const {
+  constexpr std::size_t most = 6;
+  made.resize(std::size_t{1} << std::min(spreads_.size(), most));
+  std::vector<CutLaw> laws;
+  for (std::size_t k = 0; k < spreads_.size(); ++k)
+    laws.push_back(law(k, drawn_, makes_bodies_ ? &body_ : nullptr));
+  make(made, [&](std::size_t k, std::size_t i) { return i >> (k % most) & 1u ? laws[k].to : laws[k].from; });
 }
 
 }  // namespace leapmap

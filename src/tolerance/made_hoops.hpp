@@ -47,6 +47,9 @@ class MadeHoops {
   /// Hoops first, first + 1, ...
   void fill(std::size_t first, std::span<Design> made) const;
 
+  /// Hoops at the ends of the laws: every corner of the first few, the others' ends in turn.
+  void corners(std::vector<Design>& made) const;
+
   /// The law of spread k around this drawing.
   CutLaw law(std::size_t k, const Design& drawn, const Body* body = nullptr) const;
   /// Whether of each law as much is left as has to be.
@@ -65,6 +68,9 @@ class MadeHoops {
     CutLaw law{};
     std::vector<double> deviations;
   };
+  /// deviation(k, i): of spread k from the drawing, in widths, of hoop i.
+  template <class Deviation>
+  void make(std::span<Design> made, const Deviation& deviation) const;
   double value_drawn(const Made& spread, const Design& drawn, const Body& body) const;
   double width_of(const Made& spread, const Design& drawn, const Body& body) const;
   /// What the made body comes to: its ratios, and what the turn of its centre of mass and its mass change.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <limits>
 #include <utility>
 #include <variant>
@@ -42,9 +43,27 @@ ScatterSolver::ScatterSolver(const Scatter& scatter, const std::optional<Body>& 
 double ScatterSolver::tell(const OfMade& what) {
   if (what.statistic == Statistic::cut_off) return cut_off_;
   if (what.statistic == Statistic::unsolved) return tally_.failed();
+  if (what.statistic == Statistic::worst_case) return worst_;
   if (what.statistic == Statistic::yield) return what.error ? tally_.yield().error : tally_.yield().value;
   return what.error ? tally_.error(what.statistic, what.of) : tally_.tell(what.statistic, what.of);
 }
+
+void ScatterSolver::note_worst(std::span<const Outcome> outcomes) {
+  for (const Outcome& outcome : outcomes) {
+    if (outcome.status == Status::failed) continue;
+    worst_ = std::min(worst_, outcome.status == Status::jumped ? outcome.jump_height : 0.0);
+  }
+}
+
+namespace {
+
+bool wants_worst(const MadeColumns& columns) {
+  return std::any_of(columns.fields().begin(), columns.fields().end(), [](const Field* field) {
+    return std::get<OfMade>(field->source).statistic == Statistic::worst_case;
+  });
+}
+
+}  // namespace
 
 void ScatterSolver::solve(std::span<const Design> designs, MadeColumns& columns,
                           std::span<const Body> bodies) {
@@ -58,6 +77,14 @@ void ScatterSolver::solve(std::span<const Design> designs, MadeColumns& columns,
       solver_(std::span(made_).first(count), std::span(outcomes_).first(count));
       for (std::size_t k = 0; k < count; ++k)
         tally_.add(made_[k], outcomes_[k], (first + k) / hoops_.a_replicate());
+      if (first == 0) worst_ = HUGE_VAL;
+      note_worst(std::span(outcomes_).first(count));
+    }
+    if (wants_worst(columns)) {
+      hoops_.corners(corners_);
+      at_corners_.resize(corners_.size());
+      solver_(corners_, at_corners_);
+      note_worst(at_corners_);
     }
     for (std::size_t f = 0; f < columns.fields().size(); ++f)
       columns.put(f, i, tell(std::get<OfMade>(columns.fields()[f]->source)));

@@ -52,6 +52,7 @@ class ScatterSolver {
 
  private:
   double tell(const OfMade& what);
+  void note_worst(std::span<const Outcome> outcomes);
 
   MadeHoops hoops_;
   Solver solver_;
@@ -59,6 +60,9 @@ class ScatterSolver {
   double cut_off_ = 0.0;
   std::vector<Design> made_;
   std::vector<Outcome> outcomes_;
+  double worst_ = 0.0;  // least height of the hoops in hand, 0 where one does not jump
+  std::vector<Design> corners_;
+  std::vector<Outcome> at_corners_;
 };
 
 }  // namespace leapmap

@@ -106,3 +106,32 @@ def test_what_cannot_be_proved_is_refused_in_a_line(arguments, words):
     assert refused.returncode == 2 and refused.stderr.count("allowed:") == 1, refused.stderr
     for word in words:
         assert word in refused.stderr, refused.stderr
+
+
+def test_the_design_whose_worst_hoop_is_best_is_proved(tmp_path):
+    (tmp_path / "q.toml").write_text(
+        """
+[design]
+slope = { from = "15 deg", to = "25 deg" }
+[tolerances]
+slope = { uniform = "1 deg" }
+mass_ratio = { uniform = "2 %" }
+samples = 32
+[goal]
+maximize = ["worst_case"]
+""", encoding="utf-8")
+    found = json.loads(leapmap("design", tmp_path / "q.toml", "--json").stdout)
+    best = found["designs"][0]
+    low, high = best["worst_case"]["jump_height"]
+    assert best["worst_case"]["proved"] and best["objectives"]["worst_case"] == low
+    assert 0.8 < low <= high < best["fields"]["jump_height"]
+    slope = best["parameters"]["slope"]
+    for tilt in (-1, 0.3, 1):  # no hoop within them jumps lower
+        for share in (-0.02, 0.02):
+            made = json.loads(leapmap("hop", "--slope", repr(slope + np.radians(tilt)), "--mass-ratio",
+                                      repr(20 / 8.2 * (1 + share)), "--json").stdout)
+            assert made["jump_height"] >= low - 1e-12
+    normal = leapmap("design", tmp_path / "q.toml", "--set", 'tolerances.slope={normal="1 deg"}')
+    assert normal.returncode == 2 and "tolerances.slope" in normal.stderr and "uniform" in normal.stderr
+    slips = leapmap("design", tmp_path / "q.toml", "--set", "friction=coulomb")
+    assert slips.returncode == 2 and "worst_case" in slips.stderr
