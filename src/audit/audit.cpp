@@ -12,6 +12,7 @@
 #include "engine/parallel.hpp"
 #include "hoop/units.hpp"
 #include "leapmap/errors.hpp"
+#include "leapmap/prove.hpp"
 #include "map/hdf5.hpp"
 #include "model/fields.hpp"
 #include "model/variable.hpp"
@@ -235,19 +236,43 @@ std::string audit_method(const Numerics& numerics) {
   return resolved_method(numerics) == "exact" ? "gsl-rk8pd" : "exact";
 }
 
+std::string auditor_of(const Numerics& numerics) {
+  return numerics.audit_by == "proof" ? numerics.audit_by : audit_method(numerics);
+}
+
 AuditReport begin_audit(const Spec& spec) {
   AuditReport report;
-  report.method = audit_method(spec.numerics);
+  report.method = auditor_of(spec.numerics);
   const double rounding = spec.output.precision == "f4" ? std::numeric_limits<float>::epsilon() : 0.0;
-  const double slack = report.method == "exact" ? adaptive_slack : 1.0;
+  const double slack = resolved_method(spec.numerics) == "exact" ? 1.0 : adaptive_slack;
   report.allowed_error = std::max(spec.numerics.tolerance * slack, own_error) + rounding;
   return report;
 }
 
 namespace {
 
+/// The middles of what is proved; what is not proved has failed.
+Solver solver_by_proof(const Spec& spec) {
+  const auto middle = [](const Enclosure& within) { return within.low + 0.5 * (within.high - within.low); };
+  return [scene = spec.scene, middle](std::span<const Design> designs, std::span<Outcome> outcomes) {
+    std::ranges::transform(designs, outcomes.begin(), [&](const Design& design) {
+      const Proof proof = prove(design, scene);
+      Outcome outcome;
+      outcome.status = proof.proved ? proof.status : Status::failed;
+      outcome.spurious_first_jump = proof.spurious_first_jump;
+      outcome.candidates =
+          static_cast<std::uint8_t>(std::clamp(proof.lift_offs, 0L, long{Outcome::most_candidates}));
+      outcome.jump_height = middle(proof.height), outcome.jump_time = middle(proof.time);
+      outcome.first_jump_height = middle(proof.first_height);
+      outcome.first_jump_time = middle(proof.first_time);
+      return outcome;
+    });
+  };
+}
+
 /// The first jump of the spec's designs, all of it, by the method that audits.
 Solver second_solver(const Spec& spec, double tolerance) {
+  if (spec.numerics.audit_by == "proof") return solver_by_proof(spec);
   Request request{.scene = spec.scene,
                   .numerics = {.method = audit_method(spec.numerics), .tolerance = tolerance}};
   request.scene.jumps = 1, request.scene.settle = 0;
@@ -277,6 +302,7 @@ Auditor::Auditor(const Spec& spec, std::size_t referee_every)
       gaits_(spec, begin_audit(spec).allowed_error),
       referee_every_(referee_every),
       allowed_(begin_audit(spec).allowed_error) {
+  proved_.fields = {"jump_height", "jump_time", "first_jump_height", "first_jump_time"};
   if (referee_every == 0) {
     const double audited = spec.numerics.audit * static_cast<double>(designs_of(shape_of(spec)));
     const auto large = static_cast<std::size_t>(audited / most_refereed);
@@ -284,11 +310,11 @@ Auditor::Auditor(const Spec& spec, std::size_t referee_every)
   }
 }
 
-auto Auditor::verdict_of(const AuditSolver& judge, const Design& design, const Outcome& ours) const
-    -> Verdict {
+auto Auditor::verdict_of(const AuditSolver& judge, const Design& design, const Outcome& ours,
+                         const Output& output) const -> Verdict {
   const Outcome theirs = solved(judge.solve, design);
   Verdict verdict;
-  verdict.difference = difference(ours, theirs, spec_.output);
+  verdict.difference = difference(ours, theirs, output);
   verdict.undecided = theirs.status == Status::failed;
   if (verdict.undecided) return verdict;
   verdict.wrong_flags = verdict.difference.flags;
@@ -363,11 +389,13 @@ void Auditor::look_at(const AuditSample& sample, AuditReport& report) const {
   sequences_.look_at(number, design, ours, report);
   gaits_.look_at(number, design, ours, report);
   if (!sample.gradient.empty()) gradients_.look_at(number, design, ours, sample.gradient, report);
-  Verdict verdict = verdict_of(second_, design, ours);
+  const bool by_proof = spec_.numerics.audit_by == "proof";
+  Verdict verdict = verdict_of(second_, design, ours, by_proof ? proved_ : spec_.output);
   std::optional<Verdict> ruling;
   // Where an integration convicts exact, the referee is asked for its opinion.
   const bool second_opinion = verdict.convicts() && resolved_method(spec_.numerics) == "exact";
-  if (mixed(number) % referee_every_ == 0 || second_opinion) ruling = verdict_of(referee_, design, ours);
+  if (mixed(number) % referee_every_ == 0 || second_opinion)
+    ruling = verdict_of(referee_, design, ours, spec_.output);
   const bool acquitted = ruling && !ruling->undecided && !ruling->convicts();
   if (verdict.convicts() && acquitted) verdict.undecided = true;
   // Of flags two of three decide. Numbers may be wrong by a formula that the second method shares.

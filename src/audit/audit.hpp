@@ -57,6 +57,9 @@ struct AuditDifference {
 /// The method that audits another: exact audits integration, integration by gsl-rk8pd at 1e-13 audits exact.
 std::string audit_method(const Numerics& numerics);
 
+/// What the spec's audit compares with: that method, or "proof".
+std::string auditor_of(const Numerics& numerics);
+
 /// A report on no design yet.
 AuditReport begin_audit(const Spec& spec);
 
@@ -79,13 +82,16 @@ class Auditor {
 
     bool convicts() const { return !undecided && (wrong_flags || inaccurate); }
   };
-  Verdict verdict_of(const AuditSolver& judge, const Design& design, const Outcome& ours) const;
+  /// output: whose fields are compared.
+  Verdict verdict_of(const AuditSolver& judge, const Design& design, const Outcome& ours,
+                     const Output& output) const;
   Verdict verdict_among(const Outcome& ours, const std::vector<Outcome>& beside) const;
   bool exceeds(const AuditDifference& d, const AuditDifference& doubt, const Outcome& ours) const;
 
   const Spec& spec_;
   DesignSpace space_;
   AuditSolver second_, referee_;
+  Output proved_;  ///< what proofs tell of a design
   GradientAuditor gradients_;
   SequenceAuditor sequences_;
   GaitAuditor gaits_;

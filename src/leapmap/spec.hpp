@@ -25,6 +25,7 @@ struct Numerics {
   double fixed_step = 0;          ///< stepper: > 0: constant steps [sqrt(R/g)] without error control
   long max_steps = 1'000'000;     ///< stepper: a design that needs more gets status failed
   double audit = 0.001;           ///< fraction of designs solved again by an independent method, in [0, 1]
+  std::string audit_by = "method";  ///< "method": a second solver; "proof": enclosures, without slip
 };
 
 /// What a map stores.

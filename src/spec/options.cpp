@@ -38,6 +38,8 @@ std::vector<std::string_view> names_same_in_si() {
   return names;
 }
 
+std::vector<std::string_view> auditors() { return {"method", "proof"}; }
+
 std::vector<std::string_view> precisions() { return {"f8", "f4"}; }
 
 std::vector<std::string_view> field_names() {
@@ -139,6 +141,13 @@ const std::array other_keys{
            "1",
            "fraction of designs solved again by an independent method",
            {0.0, 1.0}},
+    Option{"numerics",
+           "audit_by",
+           TextSlot{[](Spec& s) -> std::string& { return s.numerics.audit_by; }},
+           "",
+           "what the audit compares with: another method, or proof, whose enclosures hold, without slip",
+           {},
+           auditors},
     Option{"gait",
            "settle",
            IntegerSlot{[](Spec& s) -> long& { return s.scene.settle; }},

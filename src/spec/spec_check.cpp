@@ -179,6 +179,13 @@ void check_count(const Spec& spec) {
     refuse(spec, "axes", fmt::format("make {:.3g} designs", designs), "at most 1e12");
 }
 
+/// That what audits can judge the scene.
+void check_auditor(const Spec& spec) {
+  if (spec.numerics.audit_by != "proof") return;
+  if (spec.scene.friction != Friction::sticking)
+    refuse(spec, "audit_by", "is proof, which cannot judge hoops with friction", "method, or without slip");
+}
+
 /// What the scene's model cannot do.
 void check_capabilities(const Spec& spec) {
   const Model& model = model_of(spec.scene);
@@ -248,6 +255,7 @@ void check_spec(const Spec& spec) {
              spec.hoop ? fmt::format("'{}' has the same unit for every hoop", name)
                        : "has no effect, because there is no [hoop]",
              "drive_torque, resisting_torque, release_spin, with [hoop] in the spec");
+  check_auditor(spec);
   check_capabilities(spec);
   check_names(spec);
   check_gradients(spec);

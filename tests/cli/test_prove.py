@@ -47,6 +47,18 @@ def test_a_map_is_what_is_proved_until_a_number_of_it_is_changed(tmp_path):
     assert "of 7 designs, of 63 in the map" in share.stdout
 
 
+def test_a_sweep_is_audited_by_proofs(tmp_path):
+    (tmp_path / "s.toml").write_text(SMALL.replace("audit = 0", 'audit = 1.0\naudit_by = "proof"'),
+                                     encoding="utf-8")
+    done = leapmap("sweep", tmp_path / "s.toml", "-o", tmp_path / "m.h5")
+    assert done.returncode == 0 and "by proof" in done.stdout, done.stdout + done.stderr
+    with h5py.File(tmp_path / "m.h5") as m:
+        assert m.attrs["audit_method"] == "proof" and m.attrs["audit_designs"] == 63
+        assert m.attrs["audit_flag_mismatches"] == 0 and m.attrs["audit_max_abs_height_error"] < 1e-13
+    slips = leapmap("sweep", tmp_path / "s.toml", "--set", "friction=coulomb", "-o", tmp_path / "n.h5")
+    assert slips.returncode == 2 and "audit_by" in slips.stderr
+
+
 def test_cells_of_a_grid_are_proved_and_hold_their_designs(tmp_path):
     (tmp_path / "s.toml").write_text(SMALL, encoding="utf-8")
     done = leapmap("prove", tmp_path / "s.toml", "-o", tmp_path / "p.h5")
