@@ -23,10 +23,12 @@ def chart(grid, curves):
     if "proof" not in m.fields or "jump_height_low" not in m.fields:
         raise NotAMap(f"{m.path}: holds no proofs; leapmap prove SPEC -o FILE makes a map that does")
     proved, crossed, opened = (m.code("proof", word) for word in ("proved", "crossed", "open"))
+    if not (proved & np.isfinite(m.fields["jump_height_low"])).any():
+        raise NotAMap(f"{m.path}: no cell is proved to jump, so there is no height to draw")
     low = np.where(proved, m.fields["jump_height_low"], np.nan)
     look = looks.LOOKS["jump_height"]
     colours, norm, levels = scale_of(look, looks.levels_of(look, low), low)
-    kinds = [(proved & np.isnan(low), NONE, "proved: no jump"),
+    kinds = [(proved & np.isnan(low), NONE, "proved: none jumps"),
              (crossed, CROSSED, "crossed by a discontinuity"), (opened, OPEN, "open")]
     figure, axes = grid.figure()
     starred = False

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -17,19 +18,31 @@
 namespace leapmap::cli {
 namespace {
 
-/// As many digits as both bounds share, and two more.
+/// In so many digits, not above the number, or not below it.
+std::string rounded(double number, int digits, bool down) {
+  const auto text = [&](double value) { return fmt::format("{:.{}g}", value, digits); };
+  std::string found = text(number);
+  for (double beside = number; down ? std::stod(found) > number : std::stod(found) < number;)
+    found = text(beside -=
+                 (down ? 0.5 : -0.5) * std::pow(10.0, std::ceil(std::log10(std::abs(number))) - digits));
+  return found;
+}
+
+/// As many digits as both bounds share, and two more; outwards.
 std::string told(const Enclosure& within) {
   const double width = within.high - within.low, size = std::max(std::abs(within.high), 1e-300);
+  constexpr int most = 17;
   const int digits =
-      width > 0.0 ? std::clamp(2 - static_cast<int>(std::floor(std::log10(width / size))), 3, 17) : 17;
-  return fmt::format("[{:.{}g}, {:.{}g}]", within.low, digits, within.high, digits);
+      width > 0.0 ? std::clamp(2 - static_cast<int>(std::floor(std::log10(width / size))), 3, most) : most;
+  return fmt::format("[{}, {}]", rounded(within.low, digits, true), rounded(within.high, digits, false));
 }
 
 std::string in_diameters(const Enclosure& height, const Spec& spec) {
   const double mm = 2000.0 * spec.scene.radius;
-  return fmt::format(
-      "{} diameters{}", told(height),
-      spec.hoop ? fmt::format(" ({:.4g} to {:.4g} mm)", mm * height.low, mm * height.high) : "");
+  return fmt::format("{} diameters{}", told(height),
+                     spec.hoop ? fmt::format(" ({} to {} mm)", rounded(mm * height.low, 4, true),
+                                             rounded(mm * height.high, 4, false))
+                               : "");
 }
 
 }  // namespace
@@ -63,22 +76,27 @@ Json proof_json(const Proof& proof) {
 }
 
 std::string worst_case_lines(const WorstCase& found, const Spec& spec) {
-  const auto boxes = fmt::format("{} boxes", grouped(static_cast<std::size_t>(found.boxes)));
+  const auto boxes =
+      fmt::format("{} box{}", grouped(static_cast<std::size_t>(found.boxes)), found.boxes == 1 ? "" : "es");
   const std::string command = found.worst ? hop_command(spec, *found.worst) : "";
   const std::string what = spec.goals.empty() ? "jumps" : "reaches every goal";
   if (found.answer == WorstCase::Answer::counterexample)
-    return fmt::format("Counterexample: not every hoop within the tolerances {} ({}).\nThis one {}: {}\n",
-                       what, boxes,
-                       found.outcome.status == Status::jumped
-                           ? fmt::format("jumps {:.6g} diameters", found.outcome.jump_height)
-                           : fmt::format("ends as {}", name_of(found.outcome.status)),
-                       command);
+    return fmt::format(
+        "Counterexample: not every hoop within the tolerances {} ({}).\nThis one {}: {}\n", what, boxes,
+        found.outcome.status == Status::jumped
+            ? fmt::format("jumps {:.6g} diameters{}", found.outcome.jump_height,
+                          spec.hoop ? fmt::format(" ({:.4g} mm)",
+                                                  2000.0 * spec.scene.radius * found.outcome.jump_height)
+                                    : "")
+            : fmt::format("ends as {}", name_of(found.outcome.status)),
+        command);
   std::string lines =
       found.answer == WorstCase::Answer::proved
           ? fmt::format("Proved: every hoop within the tolerances {} ({}).\n", what, boxes)
-          : fmt::format(
-                "Open after {}: {} is too near to decide whether every hoop within the tolerances {}.\n",
-                boxes, found.open, what);
+          : fmt::format("Open after {}: {}; not known is whether every hoop within the tolerances {}.\n",
+                        boxes, found.open, what);
+  if (found.answer == WorstCase::Answer::open && found.open_at)
+    lines += fmt::format("It is near {}\n", hop_command(spec, *found.open_at));
   if (!std::isnan(found.height.low))
     lines += fmt::format("The lowest jump lies in {}.\nNearest to it: {}\n", in_diameters(found.height, spec),
                          command);
@@ -91,7 +109,7 @@ std::string worst_case_line(const WorstCase& found) {
                        told(found.height));
   return found.answer == WorstCase::Answer::counterexample
              ? "worst case: a hoop within the tolerances does not jump, or misses a goal"
-             : fmt::format("worst case: open, {} is too near", found.open);
+             : fmt::format("worst case: open, {}", found.open);
 }
 
 Json worst_case_json(const WorstCase& found) {

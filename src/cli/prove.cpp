@@ -4,7 +4,8 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
+#include <chrono>
 #include <optional>
 
 #include "cli/commands.hpp"
@@ -35,6 +36,15 @@ struct ProveArguments {
   bool quiet = false, overwrite = false, resume = false;
   Locking locking = Locking::required;
 };
+
+constexpr std::string_view never_slips =
+    "The contact never slips in this model; a hoop that you build may.\n";
+
+void refuse_goals(const Spec& spec) {
+  if (!spec.goals.empty())
+    throw InputError(fmt::format("{}: goal.{} has no effect here; allowed: with [tolerances], of one design",
+                                 origin_of(spec), spec.goals.front().field));
+}
 
 std::function<bool()> on_signal() {
   return [] { return noted_signal() != 0; };
@@ -75,15 +85,20 @@ int prove_map(const ProveArguments& arguments) {
 
 /// The cells of a spec's grid, or the designs of its list, into a map.
 int prove_cells(const ProveArguments& arguments, Spec spec) {
+  if (spec.output.fields.empty())
+    spec.output.fields = {"status", "spurious_first_jump", "candidates", "jump_height", "jump_time"};
   for (const Field& field : proof_fields()) {
     const bool is_of_time =
         *field.of_proof == ProofColumn::time_low || *field.of_proof == ProofColumn::time_high;
     if (is_of_time && !spec.axes.empty()) continue;  // told of single designs
-    if (spec.output.fields.empty())
-      spec.output.fields = {"status", "spurious_first_jump", "candidates", "jump_height", "jump_time"};
     if (std::ranges::find(spec.output.fields, field.name) == spec.output.fields.end())
       spec.output.fields.emplace_back(field.name);
   }
+  refuse_goals(spec);
+  if (!spec.scatter.spreads.empty())
+    throw InputError(
+        fmt::format("{}: tolerances.{} has no effect on the cells of a grid; allowed: with one design",
+                    origin_of(spec), spec.scatter.spreads.front().parameter));
   const std::string map = behind_links(arguments.output);
   if (map.empty())
     throw InputError("-o: is not set; allowed: a file for what is proved, for example proof.h5");
@@ -99,8 +114,9 @@ int prove_cells(const ProveArguments& arguments, Spec spec) {
   const Report report = sweep(spec, map, options);
   progress.reset();
   if (!report.whole) {
-    tell(fmt::format("interrupted after {} of {} designs, which {} keeps; resume: add --resume",
-                     grouped(report.done), grouped(report.designs), part_of(map)));
+    tell(fmt::format(
+        "interrupted after {} of {} designs, which {} keeps; resume: the same command with --resume",
+        grouped(report.done), grouped(report.designs), part_of(map)));
     return 128 + noted_signal();
   }
   if (!arguments.quiet)
@@ -109,19 +125,33 @@ int prove_cells(const ProveArguments& arguments, Spec spec) {
   return 0;
 }
 
+/// How many boxes are done, on stderr: once in ten seconds, as nobody knows how many there will be.
+std::function<void(long, long)> boxes_teller(bool quiet) {
+  using Clock = std::chrono::steady_clock;
+  return [quiet, last = Clock::now()](long boxes, long open) mutable {
+    if (quiet || Clock::now() - last < std::chrono::seconds(10)) return;
+    last = Clock::now();
+    tell(fmt::format("{} boxes evaluated, {} in hand", grouped(static_cast<std::size_t>(boxes)),
+                     grouped(static_cast<std::size_t>(open))));
+  };
+}
+
 /// One design, or all hoops within the spec's tolerances.
 int prove_hoops(const ProveArguments& arguments, const Spec& spec) {
   if (!arguments.output.empty())
     throw InputError("-o: nothing is written of one design; allowed: with a spec of axes or a list");
+  if (arguments.resume)
+    throw InputError("--resume: has no effect here; allowed: with a spec of axes or a list");
   if (spec.scatter.spreads.empty()) {
-    const Proof proof = prove(spec.design, spec.scene);
-    say("{}", proof_lines(proof, spec));
+    refuse_goals(spec);
+    say("{}{}", proof_lines(prove(spec.design, spec.scene), spec), never_slips);
     return 0;
   }
   WorstCaseOptions options{.threads = arguments.threads, .stop_requested = on_signal()};
+  options.progress = boxes_teller(arguments.quiet);
   note_signals();
   const WorstCase found = worst_case(spec, options);
-  say("{}", worst_case_lines(found, spec));
+  say("{}{}", worst_case_lines(found, spec), never_slips);
   if (noted_signal() != 0) return 128 + noted_signal();
   return found.answer == WorstCase::Answer::counterexample ? 1 : 0;
 }

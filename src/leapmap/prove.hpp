@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file
 /// What is proved of a design, or of all designs of a box: enclosures that hold, by ball arithmetic, of the
-/// model without slip up to its first jump. No rule is shared with the solvers that it judges.
+/// model without slip up to its first jump. The equations are those of the solvers, and so is what counts as
+/// one lift-off or as rest; how zeros are found, times and heights are not.
 #pragma once
 
 #include <limits>

@@ -66,10 +66,10 @@ Handle create_field(hid_t file, const Field& field, const MapLayout& layout, con
   const std::vector<hsize_t> shape = to_hsize(tiling.shape()), chunk = to_hsize(tiling.tile_shape());
   const auto* code = std::get_if<Code>(&field.source);
   const bool word = std::holds_alternative<Word>(field.source);
-  const hid_t type = code            ? H5T_STD_U8LE
-                     : word          ? H5T_STD_U64LE
-                     : layout.single ? H5T_IEEE_F32LE
-                                     : H5T_IEEE_F64LE;
+  const hid_t type = code                       ? H5T_STD_U8LE
+                     : word                     ? H5T_STD_U64LE
+                     : is_single(layout, field) ? H5T_IEEE_F32LE
+                                                : H5T_IEEE_F64LE;
   const void* fill = fill_value(layout, field);
   const std::string name(field.name);
   Handle dataset = hdf5::create_dataset(
@@ -79,8 +79,8 @@ Handle create_field(hid_t file, const Field& field, const MapLayout& layout, con
   if (word) return dataset;
   if (!code) {
     // netCDF wants the fill value in the dataset's own type
-    layout.single ? hdf5::write_attribute(dataset, "_FillValue", std::array{nanf})
-                  : hdf5::write_attribute(dataset, "_FillValue", std::array{nan});
+    is_single(layout, field) ? hdf5::write_attribute(dataset, "_FillValue", std::array{nanf})
+                             : hdf5::write_attribute(dataset, "_FillValue", std::array{nan});
     return dataset;
   }
   hdf5::write_attribute(dataset, "_FillValue", std::array{code->fill});
@@ -125,12 +125,16 @@ void write_nexus(hid_t file, const MapLayout& layout) {
 const void* fill_value(const MapLayout& layout, const Field& field) {
   if (const auto* code = std::get_if<Code>(&field.source)) return &code->fill;
   if (std::holds_alternative<Word>(field.source)) return &no_word;
-  return layout.single ? static_cast<const void*>(&nanf) : &nan;
+  return is_single(layout, field) ? static_cast<const void*>(&nanf) : &nan;
+}
+
+bool is_single(const MapLayout& layout, const Field& field) {
+  return layout.single && !std::holds_alternative<Word>(field.source) && !field.of_proof;
 }
 
 std::size_t value_bytes(const MapLayout& layout, const Field& field) {
-  if (std::holds_alternative<Word>(field.source)) return 8;
-  return std::holds_alternative<Code>(field.source) ? 1 : layout.single ? 4 : 8;
+  if (std::holds_alternative<Code>(field.source)) return 1;
+  return is_single(layout, field) ? 4 : 8;
 }
 
 std::uint64_t map_bytes(const MapLayout& layout, const Tiling& tiling) {

@@ -34,6 +34,9 @@ struct MapLayout {
 inline constexpr const char* label_name = "label";  ///< the dataset of labels
 inline constexpr std::size_t most_label_bytes = 200;
 
+/// Whether a quantity is stored as f4: bounds that are proved would not hold once they are rounded.
+bool is_single(const MapLayout& layout, const Field& field);
+
 /// Bytes of one value of a field as stored: 1, 4 or 8.
 std::size_t value_bytes(const MapLayout& layout, const Field& field);
 

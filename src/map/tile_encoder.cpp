@@ -116,7 +116,7 @@ void TileEncoder::take(std::size_t first, std::span<const Outcome> outcomes, con
       }
       const auto gather = [&](const auto& values, const auto& value) {
         using Row = std::decay_t<decltype(values[0])>;
-        layout_->single
+        is_single(*layout_, field)
             ? gather_as<float>(values, to, [&](const Row& row) { return static_cast<float>(value(row)); })
             : gather_as<double>(values, to, value);
       };

@@ -58,6 +58,7 @@ Arc arc_of(const TakingOff<D>& off) {
 template <std::size_t N>
 BothNumbers<N> higher(const BothNumbers<N>& a, const BothNumbers<N>& b) {
   const auto larger_of = [](const Ball& x, const Ball& y) {
+    if (!x.is_finite() || !y.is_finite()) return x + y;  // not known
     if (x > y) return x;
     if (y > x) return y;
     return Ball::between(std::max(x.lower(), y.lower()), std::max(x.upper(), y.upper()));
@@ -182,7 +183,9 @@ double most_height(const Forms<N>& forms, const Both<TakingOff, N>& off, double 
   double most = 0.0;
   for (double k = 0.0; k < pieces; ++k) {
     const double begin = from + length * (k / pieces), end = from + length * ((k + 1.0) / pieces);
-    most = std::max(most, forms.range(Height{}, off, begin, end).value.upper());
+    const double here = forms.range(Height{}, off, begin, end).value.upper();
+    if (std::isnan(here)) return HUGE_VAL;
+    most = std::max(most, here);
   }
   return 0.5 * most;
 }

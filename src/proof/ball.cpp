@@ -2,6 +2,7 @@
 #include "proof/ball.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace leapmap {
 namespace {
@@ -29,6 +30,15 @@ Ball Ball::between(double from, double to) {
   arb_set_interval_arf(all.x_, a, b, precision);
   arf_clear(a), arf_clear(b);
   return all;
+}
+
+Ball meet(const Ball& a, const Ball& b) {
+  if (!b.is_finite()) return a;
+  if (!a.is_finite()) return b;
+  Ball both;
+  if (!arb_intersection(both.x_, a.x_, b.x_, Ball::precision))
+    throw std::logic_error("two enclosures of one number have none in common");
+  return both;
 }
 
 double Ball::lower() const {

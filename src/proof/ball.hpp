@@ -93,11 +93,9 @@ class Ball {
   }
   /// All numbers of both, and those between.
   friend Ball hull(const Ball& a, const Ball& b) { return made(arb_union, a, b); }
-  /// The numbers of both, of which there has to be one.
-  friend Ball meet(const Ball& a, const Ball& b) {
-    Ball c;
-    return arb_intersection(c.x_, a.x_, b.x_, precision) ? c : a;
-  }
+  /// The numbers of both, of which there has to be one: throws std::logic_error if there is none. What is not
+  /// finite says nothing.
+  friend Ball meet(const Ball& a, const Ball& b);
 
  private:
   template <class F>

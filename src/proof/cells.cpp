@@ -9,14 +9,12 @@
 
 #include "leapmap/errors.hpp"
 #include "leapmap/solve.hpp"
+#include "model/parameters.hpp"
+#include "proof/acting.hpp"
 #include "support/stop.hpp"
 
 namespace leapmap {
 namespace {
-
-constexpr std::array<double Design::*, 8> acting{
-    &Design::slope,         &Design::mass_ratio,   &Design::offset_ratio, &Design::inertia_factor,
-    &Design::release_angle, &Design::release_spin, &Design::drive_torque, &Design::resisting_torque};
 
 void widen(Enclosure& all, const Enclosure& one) {
   all.low = std::fmin(all.low, one.low), all.high = std::fmax(all.high, one.high);
@@ -38,6 +36,14 @@ std::vector<Design> designs_of(const DesignBox& box, const std::vector<double De
     all.push_back(design);
   }
   return all;
+}
+
+const Range& range_of(double Design::*member) {
+  const auto row = std::ranges::find_if(parameters(), [&](const Parameter& parameter) {
+    const auto* same = std::get_if<double Design::*>(&parameter.member);
+    return same && *same == member;
+  });
+  return row->range;
 }
 
 /// A box that is still to be proved.
@@ -70,9 +76,11 @@ DesignBox within_rounding(const Design& design) {
     const bool is_whole = design.*member == 0.0 || (member == &Design::offset_ratio && design.*member == 1.0);
     if (is_whole || varying == most) continue;  // as written, and no rounding of what is beside it
     ++varying;
+    double &from = box.from.*member, &to = box.to.*member;
+    const Range& range = range_of(member);
     for (int k = 0; k < units; ++k) {
-      box.from.*member = std::nextafter(box.from.*member, -HUGE_VAL);
-      box.to.*member = std::nextafter(box.to.*member, HUGE_VAL);
+      if (const double less = std::nextafter(from, -HUGE_VAL); range.holds(less)) from = less;
+      if (const double more = std::nextafter(to, HUGE_VAL); range.holds(more)) to = more;
     }
   }
   return box;
@@ -86,13 +94,22 @@ CellProof prove_cell(const DesignBox& box, const Scene& scene) {
     if (box.from.*member != box.to.*member) varying.push_back(member);
   CellProof cell;
   std::optional<Design> known;  // of the kind
-  /// Whether a design is of another kind than one before.
+  /// Whether a design is proved to be of another kind than one before.
   const auto differs = [&](const OutcomeKind& kind, const Design& design) {
     if (!cell.kind) cell.kind = kind, known = design;
     if (kind == *cell.kind) return false;
     cell.differ = {*known, design};
     cell.finding = CellFinding::crossed;
     return true;
+  };
+  /// The same of a design that the solver finds to be one.
+  const auto is_another = [&](const Design& design) {
+    const Outcome outcome = solve(design, scene);
+    const bool jumps = outcome.status == Status::jumped;
+    const OutcomeKind kind{outcome.status, outcome.spurious_first_jump, jumps ? outcome.candidates : 0};
+    if (outcome.status == Status::failed || (cell.kind && kind == *cell.kind)) return false;
+    const Proof proof = prove(design, scene);
+    return proof.proved && differs(outcome_kind(proof), design);
   };
   std::vector<Part> todo{{box}};
   bool is_open = false;
@@ -107,13 +124,8 @@ CellProof prove_cell(const DesignBox& box, const Scene& scene) {
       widen(cell.height, proof.height), widen(cell.time, proof.time);
       continue;
     }
-    for (const Design& design : designs_of(part.box, varying)) {
-      const Outcome outcome = solve(design, scene);
-      const bool jumps = outcome.status == Status::jumped;
-      if (outcome.status != Status::failed &&
-          differs({outcome.status, outcome.spurious_first_jump, jumps ? outcome.candidates : 0}, design))
-        return cell;
-    }
+    for (const Design& design : designs_of(part.box, varying))
+      if (is_another(design)) return cell;
     if (varying.empty() || part.cuts == cuts_an_axis * varying.size() || cell.boxes >= most_boxes) {
       is_open = true;
       continue;
@@ -128,7 +140,8 @@ CellProof prove_cell(const DesignBox& box, const Scene& scene) {
 Cells::Cells(const Spec& spec) : spec_(spec), space_(spec) {
   if (spec.scene.friction != Friction::sticking)
     throw InputError(fmt::format(
-        "{}: friction = coulomb: nothing can be proved with friction; allowed: sticking", origin_of(spec)));
+        "{}: friction = coulomb: nothing can be proved with friction; allowed: friction = sticking",
+        origin_of(spec)));
   for (const Axis& axis : spec.axes)
     if (axis.values.size() > 1 && find_body_number(axis.key))
       throw InputError(

@@ -3,17 +3,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <vector>
+
 #include "leapmap/errors.hpp"
 #include "model/parameters.hpp"
+#include "proof/acting.hpp"
 #include "proof/walk.hpp"
 
 namespace leapmap {
 namespace {
-
-/// What a proof is about: all that acts without slip.
-constexpr std::array<double Design::*, 8> acting{
-    &Design::slope,         &Design::mass_ratio,   &Design::offset_ratio, &Design::inertia_factor,
-    &Design::release_angle, &Design::release_spin, &Design::drive_torque, &Design::resisting_torque};
 
 template <std::size_t N>
 Proof walk(const DesignBox& box, const std::vector<double Design::*>& varying, const Scene& scene) {
@@ -40,9 +40,15 @@ bool can_prove() { return true; }
 
 Proof prove(const DesignBox& box, const Scene& scene) {
   check_scene(scene);
+  for (const auto member : acting)
+    if (!(box.from.*member <= box.to.*member))
+      throw InputError(
+          fmt::format("a box from {} to {}; allowed: bounds in order", box.from.*member, box.to.*member));
+  if (box.from.size != box.to.size)
+    throw InputError("a box of hoops of several sizes; allowed: one size, of which times depend");
   check_design(box.from, scene), check_design(box.to, scene);
   if (scene.friction != Friction::sticking)
-    throw InputError("friction = coulomb: nothing can be proved with friction; allowed: sticking");
+    throw InputError("friction = coulomb: nothing can be proved with friction; allowed: friction = sticking");
   std::vector<double Design::*> varying;
   for (const auto member : acting)
     if (box.from.*member != box.to.*member) varying.push_back(member);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace leapmap {
 namespace {
@@ -182,7 +183,7 @@ auto Walk<N>::look_for_jump(const Leg& leg, const Ball& end) -> End {
       continue;
     }
     const BothNumbers<N>& x = *root;
-    const Ball angle = leg.roll.all.release.value + x.all.value;
+    const Ball angle = release_ + x.all.value;
     if (last) {  // as rolling between them is not told from none, the model counts such two as one
       const Ball between = x.all.value - *last, one_fall(1e-6);
       const bool is_far = between > one_fall * (Ball(1) + abs(angle));
@@ -220,52 +221,43 @@ Enclosure Walk<N>::time_at(const Leg& leg, const BothNumbers<N>& x) {
 }
 
 template <std::size_t N>
+Proof Walk<N>::ended(Status status) {
+  if (!counts_ && proof_.lift_offs == 0) throw Undecided{appears};
+  if (!counts_) proof_.lift_offs = -1;
+  proof_.proved = true;
+  proof_.status = status;
+  return proof_;
+}
+
+template <std::size_t N>
 Proof Walk<N>::prove() {
   const int resists_way = resists();
   const bool is_held_at_release =
       resists_way == 0 && !(value_of_parameter<D>(&Design::resisting_torque).value == Ball(0));
   const BothHoops hoop{hoop_of<D>(resists_way), hoop_of<Ball>(resists_way)};
-  proof_.proved = true;
-  if (is_held_at_release) {
-    proof_.status = Status::stalled;
-    return proof_;
-  }
-  if (is_airborne(hoop)) {
-    proof_.status = Status::airborne_at_release;
-    return proof_;
-  }
+  if (is_held_at_release) return ended(Status::stalled);
+  if (is_airborne(hoop)) return ended(Status::airborne_at_release);
   const int way = sets_out(hoop);
-  if (way == 0) {
-    proof_.status = Status::stalled;
-    return proof_;
-  }
+  if (way == 0) return ended(Status::stalled);
   Leg leg = first_leg(hoop, way);
+  // Solvers take a release many turns from 0 back to the first.
+  const double release = box_.from.release_angle, pi = std::numbers::pi;
+  release_ = std::abs(release) > 4.0 * pi ? Ball::between(-pi, pi) : leg.roll.all.release.value;
   while (true) {
     const auto turn = turn_of(leg);
     const Ball& end = turn ? turn->all.value : leg.length.all.value;
     const End how = look_for_jump(leg, end);
     if (how == End::jump || !turn) {
-      proof_.status = how == End::jump   ? Status::jumped
-                      : how == End::back ? Status::stalled
-                                         : Status::no_jump;
-      if (!counts_ && proof_.lift_offs == 0) throw Undecided{appears};
-      if (!counts_) proof_.lift_offs = -1;
-      return proof_;
+      return ended(how == End::jump ? Status::jumped : how == End::back ? Status::stalled : Status::no_jump);
     }
     if (resists_way != 0) {
       const Hoop<D>& of = leg.roll.all.hoop;
       const Ball push = (torque(of, trig(D(leg.roll.all.release + turn->all))) + of.resistance).value;
       const Ball spare = abs(push) - abs(of.resistance.value);
-      if (spare.sign() == 0) throw Undecided{"a hoop that is hardly held"};
-      if (spare.sign() < 0) {
-        proof_.status = Status::stalled;
-        return proof_;
-      }
-      Proof reverses;  // which the model does not follow
-      reverses.proved = true;
-      reverses.status = Status::failed;
-      return reverses;
+      if (spare.sign() < 0) return ended(Status::stalled);
+      throw Undecided{"a rotation that reverses against the resisting torque"};  // which no method follows
     }
+    release_ = -(release_ + turn->all.value);
     const Leg next = next_leg(leg, *turn);
     if constexpr (N == 0) {  // to half-way, and from there as it would go back
       const Ball half = (timed_ + turn->middle) * Ball(0.5);

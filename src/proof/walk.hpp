@@ -30,7 +30,7 @@ class Walk {
   using BothRolls = Both<Roll, N>;
 
   /// How one leg ends.
-  enum class End { jump, runway, turn, back };
+  enum class End { jump, runway, back };
   struct Leg {
     BothRolls roll;
     BothNumbers<N> length;  ///< to the runway's end, or of the last leg to where it set out
@@ -59,10 +59,13 @@ class Walk {
   std::array<double Design::*, N> varying_;
   const Scene& scene_;
   Forms<N> forms_{};
+  Proof ended(Status status);
+
   Proof proof_;
-  bool counts_ = true;    ///< all designs have as many lift-offs
-  Ball time_ = Ball(0);   ///< from the release to where it was told last
-  Ball timed_ = Ball(0);  ///< where that is, past the beginning of the leg
+  Ball release_ = Ball(0);  ///< where the leg begins, as lift-offs are told apart there
+  bool counts_ = true;      ///< all designs have as many lift-offs
+  Ball time_ = Ball(0);     ///< from the release to where it was told last
+  Ball timed_ = Ball(0);    ///< where that is, past the beginning of the leg
 };
 
 inline Enclosure enclosure_of(const Ball& ball) { return {ball.lower(), ball.upper()}; }

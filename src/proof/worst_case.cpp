@@ -35,6 +35,7 @@ enum class Reached { all, none, some };
 
 /// Whether all hoops of a box of one outcome reach the goals.
 Reached reach(const std::vector<Goal>& goals, const Proof& proof) {
+  if (proof.status == Status::failed) return Reached::some;  // nothing is known of it
   if (proof.status != Status::jumped) {
     const bool asked_for = std::ranges::any_of(goals, [](const Goal& goal) {
       return goal.field == "status" && goal.at_least != static_cast<double>(Status::jumped);
@@ -70,6 +71,13 @@ struct Part {
   bool operator<(const Part& other) const { return low > other.low; }  // the lowest first
 };
 
+/// The number of the range that is nearest: hoops are made within it.
+double inside(const Range& range, double value) {
+  if (value <= range.least) return range.least_allowed ? range.least : std::nextafter(range.least, HUGE_VAL);
+  if (value >= range.most) return range.most_allowed ? range.most : std::nextafter(range.most, -HUGE_VAL);
+  return value;
+}
+
 /// Tolerances as a box about the nominal design.
 DesignBox box_of(const Spec& spec, std::vector<double Design::*>& varying) {
   DesignBox box{spec.design, spec.design};
@@ -80,11 +88,13 @@ DesignBox box_of(const Spec& spec, std::vector<double Design::*>& varying) {
     };
     if (spread.law != Spread::Law::uniform) refuse("is normal, which has no bounds", "uniform");
     const Option* option = find_option("design", spread.parameter);
-    if (!option || !member_of(*option)) refuse("is a number of [hoop]", "parameters of a design");
+    if (!option || !member_of(*option))
+      refuse("is a number of [hoop]",
+             "mass_ratio, offset_ratio, inertia_factor and other parameters of a design");
     const auto member = member_of(*option);
     const double width = spread.percent ? std::abs(spec.design.*member) * spread.width / 100.0 : spread.width;
-    box.from.*member = std::max(spec.design.*member - width, option->range.least);
-    box.to.*member = std::min(spec.design.*member + width, option->range.most);
+    box.from.*member = inside(option->range, spec.design.*member - width);
+    box.to.*member = inside(option->range, spec.design.*member + width);
     if (width > 0.0) varying.push_back(member);
   }
   return box;
@@ -95,7 +105,8 @@ DesignBox box_of(const Spec& spec, std::vector<double Design::*>& varying) {
 void check_worst_case(const Spec& spec) {
   if (spec.scene.friction != Friction::sticking)
     throw InputError(fmt::format(
-        "{}: friction = coulomb: nothing can be proved with friction; allowed: sticking", origin_of(spec)));
+        "{}: friction = coulomb: nothing can be proved with friction; allowed: friction = sticking",
+        origin_of(spec)));
   for (const Goal& goal : spec.goals)
     if (std::ranges::find(provable, goal.field) == provable.end())
       throw InputError(fmt::format("{}: goal.{}: nothing can be proved of it; allowed: {}", origin_of(spec),
@@ -113,8 +124,12 @@ class Search {
   }
 
   WorstCase run() {
-    while (!todo_.empty() && found_.answer != WorstCase::Answer::counterexample && !is_known() && goes_on())
-      take(wave());
+    try {
+      while (!todo_.empty() && found_.answer != WorstCase::Answer::counterexample && !is_known() && goes_on())
+        take(wave());
+    } catch (const Stopped&) {  // inside a proof that takes long
+      ++unproved_;
+    }
     finish();
     return found_;
   }
@@ -123,8 +138,10 @@ class Search {
   struct Looked {
     Part part;
     Proof proof;
-    Design design;  ///< in the middle, or a corner, whichever jumps lowest
-    Outcome outcome;
+    Design design;    ///< in the middle, or a corner, whichever jumps lowest, or misses a goal
+    Outcome outcome;  ///< of it; not computed if none jumps, and none misses
+
+    double lowest() const { return outcome.status == Status::jumped ? outcome.jump_height : HUGE_VAL; }
   };
 
   bool goes_on() const {
@@ -148,23 +165,23 @@ class Search {
 
   void take(const std::vector<Part>& parts) {
     std::vector<Looked> looked(parts.size());
-    parallel_for_each(parts.size(), options_.threads, {}, [&] {
+    parallel_for_each(parts.size(), options_.threads, options_.stop_requested, [&] {
       return [&](std::size_t i) {
         looked[i] = look(parts[i]);
         return true;
       };
     });
     for (const Looked& one : looked) settle(one);
+    if (options_.progress) options_.progress(found_.boxes, static_cast<long>(todo_.size()));
   }
 
   Looked look(const Part& part) const {
     Looked looked{part, prove(part.box, spec_.scene), {}, {}};
-    std::vector<Design> designs = sample(part.box);
-    for (std::size_t i = 0; i < designs.size(); ++i) {
-      const Outcome outcome = solve(designs[i], spec_.scene);
+    for (const Design& design : sample(part.box)) {
+      const Outcome outcome = solve(design, spec_.scene);
       const bool misses = reach(spec_.goals, of_one(outcome)) == Reached::none;
-      if (i > 0 && !misses && !(outcome.jump_height < looked.outcome.jump_height)) continue;
-      looked.design = designs[i], looked.outcome = outcome;
+      if (!misses && !(outcome.jump_height < looked.lowest())) continue;
+      looked.design = design, looked.outcome = outcome;
       if (misses) break;
     }
     return looked;
@@ -187,10 +204,11 @@ class Search {
   void settle(const Looked& looked) {
     ++found_.boxes;
     if (found_.answer == WorstCase::Answer::counterexample) return;
-    const bool misses = reach(spec_.goals, of_one(looked.outcome)) == Reached::none;
-    if (misses || looked.outcome.jump_height < lowest_found_) {
+    const bool misses = looked.outcome.status != Status::not_computed &&
+                        reach(spec_.goals, of_one(looked.outcome)) == Reached::none;
+    if (misses || looked.lowest() < lowest_found_) {
       found_.worst = looked.design, found_.outcome = looked.outcome;
-      if (!misses) lowest_found_ = looked.outcome.jump_height;
+      if (!misses) lowest_found_ = looked.lowest();
     }
     if (misses) {
       const Proof proof = prove(looked.design, spec_.scene);
@@ -199,8 +217,9 @@ class Search {
     }
     const Proof& proof = looked.proof;
     const bool reaches = proof.proved && reach(spec_.goals, proof) == Reached::all;
-    if (!proof.proved) event_ = proof.open;
-    if (reaches && (varying_.empty() || proof.height.low >= lowest_found_ - options_.resolution)) {
+    if (!proof.proved) event_ = proof.open, found_.open_at = sample(looked.part.box).front();
+    const bool may_be_lower = proof.height.low < lowest_found_ - options_.resolution;
+    if (reaches && (varying_.empty() || !may_be_lower)) {
       lowest_done_ = std::min(lowest_done_, proof.height.low);
       return;
     }
@@ -225,11 +244,16 @@ class Search {
     if (found_.answer == WorstCase::Answer::counterexample) return;
     const double low = std::min(lowest_done_, todo_.empty() ? HUGE_VAL : todo_.top().low);
     if (unproved_ > 0 || low == -HUGE_VAL) {
-      found_.open = event_.empty() ? "a height beside a goal" : event_;
+      found_.open = found_.boxes >= options_.most_boxes ? fmt::format("after that many boxes {}", event_)
+                    : !todo_.empty()                    ? "the search was stopped"
+                                                        : event_;
       return;
     }
     found_.answer = WorstCase::Answer::proved;
-    if (std::isfinite(lowest_found_)) found_.height = {low, lowest_found_};
+    if (!found_.worst) return;
+    // That hoop jumps no higher than is proved of it.
+    const Proof worst = prove(*found_.worst, spec_.scene);
+    if (worst.proved) found_.height = {low, worst.height.high};
   }
 
   const Spec& spec_;
@@ -237,9 +261,9 @@ class Search {
   std::vector<double Design::*> varying_;
   std::priority_queue<Part> todo_;
   WorstCase found_;
-  long unproved_ = 1;  ///< parts still to be looked at for the first time
+  long unproved_ = 1;  ///< parts to be looked at of which no bound is known
   double lowest_found_ = HUGE_VAL, lowest_done_ = HUGE_VAL;  ///< of hoops found; bound of parts that are done
-  std::string event_;
+  std::string event_ = "a height beside a goal";             ///< why a part was not proved last
 };
 
 }  // namespace

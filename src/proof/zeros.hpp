@@ -9,6 +9,7 @@
 
 #include "numerics/root.hpp"
 #include "proof/ball.hpp"
+#include "support/stop.hpp"
 
 namespace leapmap {
 
@@ -40,6 +41,7 @@ class ZeroSearch {
   std::optional<Cluster> next() {
     std::optional<Cluster> open;
     while (!todo_.empty() || begun_ < end_) {
+      throw_if_stopped();
       if (todo_.empty()) begin_piece();
       const auto [from, to] = todo_.back();
       todo_.pop_back();
@@ -51,8 +53,8 @@ class ZeroSearch {
         continue;
       }
       const int slope = all.rate.sign();
-      if (slope == 0 && to - from > smallest_) {
-        const double middle = from + 0.5 * (to - from);
+      const double middle = from + 0.5 * (to - from);
+      if (slope == 0 && to - from > smallest_ && from < middle && middle < to) {
         todo_.emplace_back(middle, to), todo_.emplace_back(from, middle);
         continue;
       }

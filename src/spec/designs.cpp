@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "hoop/body.hpp"
+#include "model/fields.hpp"
 #include "model/model.hpp"
 #include "spec/options.hpp"
 #include "spec/spec_hoop.hpp"
@@ -24,6 +25,11 @@ std::vector<std::size_t> shape_of(const Spec& spec) {
 
 Tiling tiling_of(const Spec& spec) {
   const std::vector<std::size_t> shape = shape_of(spec);
+  const bool proves = std::ranges::any_of(proof_fields(), [&](const Field& field) {
+    return std::ranges::find(spec.output.fields, field.name) != spec.output.fields.end();
+  });
+  constexpr std::size_t some_cells = 128;  // a second or two; where discontinuities meet more
+  if (proves) return Tiling(shape, some_cells);
   if (spec.scatter.spreads.empty() && !model_of(spec.scene).slips) return Tiling(shape);
   if (spec.scatter.spreads.empty()) {
     // Some hoops take a hundred times as long as others: small enough that shards come out even.

@@ -71,8 +71,9 @@ double stored_value(const Field& field, const Outcome& outcome) {
 void store(hid_t file, const Spec& spec, const Tile& tile, std::span<const Failed> designs) {
   for (const Field* row : columns_of(spec)) {
     const Field& field = *row;
-    if (std::holds_alternative<Derivative>(field.source) || std::holds_alternative<OfMade>(field.source))
-      continue;  // of a failed design there are none
+    if (std::holds_alternative<Derivative>(field.source) || std::holds_alternative<OfMade>(field.source) ||
+        field.of_proof)
+      continue;  // of a failed design there are none, and what is proved hangs on no method
     const std::string name(field.name), what = "retrying failed designs in " + name;
     hdf5::Handle dataset(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, what);
     if (const auto* word = std::get_if<Word>(&field.source)) {

@@ -599,6 +599,31 @@ audit = 0
 """
 
 
+def test_what_is_proved_of_cells_is_drawn_with_its_shares(tmp_path):
+    spec = tmp_path / "s.toml"
+    spec.write_text("""
+[design]
+slope = { from = "9 deg", to = "11 deg", count = 9 }
+mass_ratio = { from = 0.40, to = 0.46, count = 7 }
+[numerics]
+audit = 0
+""", encoding="utf-8")
+    assert leapmap("prove", spec, "-o", tmp_path / "p.h5").returncode == 0
+    with h5py.File(tmp_path / "p.h5") as m:
+        crossed = 100 * (m["proof"][()] == 2).mean()
+    assert 0 < crossed < 50, "a discontinuity runs through this chart"
+    done = draw("proof_chart.py", tmp_path / "p.h5", "-o", tmp_path / "chart")
+    assert done.returncode == 0, done.stderr
+    text = " ".join((tmp_path / "chart.svg").read_text(encoding="utf-8").split())
+    assert f"crossed by a discontinuity: {crossed:.3g} %" in text
+    both = draw("design_chart.py", tmp_path / "p.h5", "-o", tmp_path / "all")
+    assert both.returncode == 0 and (tmp_path / "all_proof.svg").exists(), both.stderr
+    (tmp_path / "plain.toml").write_text(spec.read_text(encoding="utf-8"), encoding="utf-8")
+    assert leapmap("sweep", spec, "-o", tmp_path / "plain.h5").returncode == 0
+    refused = draw("proof_chart.py", tmp_path / "plain.h5", "-o", tmp_path / "no")
+    assert refused.returncode != 0 and "holds no proofs" in refused.stderr
+
+
 def test_the_yield_chart_has_isolines_cliffs_and_where_to_sit(tmp_path):
     path = sweep(tmp_path, MADE)
     assert leapmap("boundaries", path, "-o", tmp_path / "map.cliffs.h5").returncode == 0

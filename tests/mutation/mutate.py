@@ -5,11 +5,16 @@ it.
 
 The solvers are compiled with the error and judged against src/referee, which is of the paper's equations (7)
 to (9) alone and includes nothing of src/physics: that is looked at first. An error that is not found, or a
-right solver that is found wrong, ends this with status 1. Needs a built libleapmap.a in LEAPMAP_BUILD."""
+right solver that is found wrong, ends this with status 1. Needs a built libleapmap.a in LEAPMAP_BUILD.
+
+--by-proof: instead of the referee ten designs are the judge, and what the program there, which has no error,
+proves of them; only of errors in the formulas without slip."""
 import argparse
 import concurrent.futures
+import json
 import os
 import pathlib
+import random
 import re
 import shutil
 import subprocess
@@ -24,7 +29,8 @@ SOURCES = [
                  "hoop/three_coordinates", "friction/rolling_leg", "friction/sliding_leg",
                  "friction/sliding_panel", "friction/coulomb", "friction/coulomb_integration")
 ] + ["tests/mutation/judge.cpp"]
-LIBRARIES = ["-lgsl", "-lgslcblas", "-lfmt", "-lhdf5_serial", "-ldeflate"]
+LIBRARIES = ["-lgsl", "-lgslcblas", "-lfmt", "-lhdf5_serial", "-lhdf5_serial_hl", "-ldeflate", "-lz",
+             "-ludunits2", "-lpugixml", "-lzip", "-lnlopt", "-lflint-arb", "-lflint", "-ltomlplusplus"]
 OFF = "T(1.001)"
 
 # What is planted: file, what is there, what takes its place. Each text must stand there exactly once.
@@ -106,6 +112,43 @@ MUTATIONS = {
 }
 
 
+# Those that act on a hoop without slip, from its release to the apex of its jump.
+WITHOUT_SLIP = [
+    "mass of the bare hoop", "rho", "1 - rho", "Ic", "least J", "J", "sin(theta + phi)", "cos(theta + phi)",
+    "w^2 by angle", "level of energy", "energy's slope", "G, rest", "G, energy", "thrust", "G, motor",
+    "seen from behind", "flight, y", "flight, y'", "flight, gravity", "flight, motor", "radius and gravity"
+]
+STATUSES = ["not_computed", "jumped", "no_jump", "stalled", "airborne_at_release"]
+
+
+def proved_designs(folder):
+    """A file of ten designs with what is proved of them: passive, driven, turning and going uphill."""
+    program = pathlib.Path(os.environ.get("LEAPMAP_BUILD", ROOT / "build/release")) / "leapmap"
+    draw, lines = random.Random(3), []
+    while len(lines) < 10:
+        n = len(lines)
+        design = {
+            "slope": draw.uniform(0.2, 0.7), "mass_ratio": draw.uniform(1, 10), "offset_ratio":
+                draw.uniform(0.5, 1), "inertia_factor": draw.uniform(0.5, 1), "release_angle":
+                    draw.uniform(2, 4.2), "release_spin": draw.uniform(-1, 1) if n % 2 else 0.0,
+            "drive_torque": draw.uniform(-0.1, 0.3) if n % 3 else 0.0, "resisting_torque": 0.0
+        }
+        if n == 9:  # uphill by its motor
+            design |= {"slope": 0.05, "drive_torque": -0.6, "release_angle": 3.0}
+        flags = [w for name, v in design.items() for w in (f"--{name.replace('_', '-')}", repr(v))]
+        told = json.loads(subprocess.run([program, "hop", *flags, "--prove", "--json"], check=True,
+                                         capture_output=True, text=True).stdout)
+        proof = told["proof"]
+        if not proof["proved"] or proof["status"] != "jumped":
+            continue
+        flag = 0 if proof["lift_offs"] == 1 else 1
+        lines.append(" ".join(map(repr, [*design.values(), STATUSES.index("jumped"), flag, proof["lift_offs"],
+                                         *proof["jump_height"], *proof["jump_time"]])))
+    path = pathlib.Path(folder) / "proved"
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
 def stands_alone():
     """Whether the referee includes nothing of src/physics."""
     for source in sorted((ROOT / "src/referee").glob("*.cpp")):
@@ -122,7 +165,7 @@ def header_of(sources, file):
     return (sources / "hoop" / f"{file}.hpp").resolve()
 
 
-def judged(name, folder, library):
+def judged(name, folder, library, proofs):
     """The judge's words on a library with that error planted; empty: it finds nothing."""
     include = folder / "src"
     shutil.copytree(ROOT / "src", include)
@@ -143,7 +186,7 @@ def judged(name, folder, library):
         ], check=True)
     subprocess.run(["g++", "-fopenmp", *objects, library, *LIBRARIES, "-o", folder / "judge"], check=True)
     try:
-        done = subprocess.run([folder / "judge"], capture_output=True, text=True, timeout=120)
+        done = subprocess.run([folder / "judge", *proofs], capture_output=True, text=True, timeout=120)
     except subprocess.TimeoutExpired:
         return "BROKEN: the judge never ends"
     if done.returncode not in (0, 1) or (done.returncode == 1) != bool(done.stdout):
@@ -155,18 +198,22 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="*", metavar="NAME", help="errors to plant; default: all")
-    asked = parser.parse_args().names
+    parser.add_argument("--by-proof", action="store_true", help="judge ten designs by what is proved of them")
+    arguments = parser.parse_args()
+    asked = arguments.names
     if unknown := [name for name in asked if name not in MUTATIONS]:
         parser.error(f"{unknown[0]} is unknown; allowed: {', '.join(MUTATIONS)}")
     library = pathlib.Path(os.environ.get("LEAPMAP_BUILD", ROOT / "build/release")) / "libleapmap.a"
-    names = [None, *(asked or MUTATIONS)]
+    names = [None, *(asked or (WITHOUT_SLIP if arguments.by_proof else MUTATIONS))]
     if not stands_alone():
         sys.exit(1)
     missed = 0
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(
             os.cpu_count()) as pool:
         places = [pathlib.Path(folder) / str(i) for i in range(len(names))]
-        for name, words in zip(names, pool.map(judged, names, places, [library] * len(names))):
+        proofs = [proved_designs(folder)] if arguments.by_proof else []
+        for name, words in zip(names, pool.map(judged, names, places, [library] * len(names),
+                                               [proofs] * len(names))):
             right = not words if name is None else words != "" and not words.startswith("BROKEN")
             missed += not right
             print(

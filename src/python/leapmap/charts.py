@@ -13,7 +13,7 @@ from leapmap._analysis import FOLDER
 CHARTS = {
     name: name + "_chart.py"
     for name in ("adequacy", "cut", "design", "experiment", "fit", "front", "gait", "jump", "list", "period",
-                 "precision", "scatter", "stability", "status", "trace", "yield")
+                 "precision", "proof", "scatter", "stability", "status", "trace", "yield")
 }
 CHARTS |= {
     "explorer": "explorer", "phases": "phase_diagram.py", "scatter_convergence": "scatter_convergence.py"
