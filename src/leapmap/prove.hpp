@@ -29,8 +29,9 @@ struct DesignBox {
 
 /// What holds of every design of a box.
 struct Proof {
-  bool proved = false;  ///< all designs have the one outcome below
-  std::string open{};   ///< if not: what is too near, in words
+  bool proved = false;    ///< all designs have the one outcome below
+  std::string open{};     ///< if not: what is too near, in words
+  bool all_jump = false;  ///< all designs jump, between the heights below, whether of one outcome or not
   Status status = Status::not_computed;
   std::uint8_t spurious_first_jump = Outcome::no_lift_off;
   long lift_offs = 0;  ///< up to the jump, which is included; -1: the number differs between designs

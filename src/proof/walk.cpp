@@ -163,6 +163,23 @@ bool Walk<N>::may_be_passed_over(const Leg& leg, double from, double to) const {
   return most_height(forms_, taking_off(leg, {D(x), x})) < scene_.hop_height;
 }
 
+/// Some designs may jump so high, and others go on. Of a single design nobody would know.
+template <std::size_t N>
+void Walk<N>::note_jump(const Ball& height, const char* event) {
+  if (N == 0 || !height.is_finite()) throw Undecided{event};
+  const Ball jumps = Ball::between(std::max(height.lower(), scene_.hop_height), height.upper());
+  may_jump_ = may_jump_ ? hull(*may_jump_, jumps) : jumps;
+  event_ = event;
+}
+
+/// The same of what may lift off between two angles past the release, and need not.
+template <std::size_t N>
+void Walk<N>::may_jump(const Leg& leg, double from, double to, const char* event) {
+  if constexpr (N == 0) throw Undecided{event};
+  const Ball x = Ball::between(from, to);
+  note_jump(flight_at(leg, {D(x), x}).all.value, event);
+}
+
 /// Looks for the jump up to where the leg ends.
 template <std::size_t N>
 auto Walk<N>::look_for_jump(const Leg& leg, const Ball& end) -> End {
@@ -170,6 +187,7 @@ auto Walk<N>::look_for_jump(const Leg& leg, const Ball& end) -> End {
   ZeroSearch search([&](double a, double b) { return forms_.range(Lift{}, leg.roll, a, b); }, 0.0,
                     end.upper() + beyond, angle_step, smallest_piece<N>);
   std::optional<Ball> last;
+  std::optional<double> unsure;  // the end of what may hold lift-offs
   while (const auto fall = search.next()) {
     if (fall->slope > 0) continue;  // it rises, if it is zero there at all
     if (Ball(fall->from) > end) break;
@@ -177,32 +195,41 @@ auto Walk<N>::look_for_jump(const Leg& leg, const Ball& end) -> End {
     if (fall->falls()) root = forms_.zero(Lift{}, leg.roll, fall->from, fall->to);
     if (root && root->all.value > end) break;
     if (!root || !(root->all.value < end)) {
-      if (!may_be_passed_over(leg, fall->from, fall->to))
-        throw Undecided{root ? "a lift-off where the way ends" : appears};
-      counts_ = false;
+      const char* event = root ? "a lift-off where the way ends" : appears;
+      if (may_be_passed_over(leg, fall->from, fall->to))
+        counts_ = false;
+      else
+        may_jump(leg, fall->from, fall->to, event);
+      unsure = fall->to;
       continue;
     }
     const BothNumbers<N>& x = *root;
     const Ball angle = release_ + x.all.value;
-    if (last) {  // as rolling between them is not told from none, the model counts such two as one
-      const Ball between = x.all.value - *last, one_fall(1e-6);
-      const bool is_far = between > one_fall * (Ball(1) + abs(angle));
-      if (!is_far && !(between < one_fall)) throw Undecided{"two lift-offs that nearly are one"};
+    // As rolling between them is not told from none, the model counts two so near each other as one.
+    const Ball one_fall = Ball(1e-6) * (Ball(1) + abs(angle));
+    if (unsure && !(x.all.value - Ball(*unsure) > one_fall)) throw Undecided{appears};
+    if (last) {
+      const Ball between = x.all.value - *last;
+      const bool is_far = between > one_fall;
+      if (!is_far && !(between < Ball(1e-6))) throw Undecided{"two lift-offs that nearly are one"};
       if (!is_far) continue;
     }
     last = x.all.value;
     const BothNumbers<N> height = flight_at(leg, x);
     ++proof_.lift_offs;
     const bool is_jump = height.all.value >= Ball(scene_.hop_height);
-    if (!is_jump && !(height.all.value < Ball(scene_.hop_height)))
-      throw Undecided{"a lift-off as high as the jump threshold"};
+    if (!is_jump && !(height.all.value < Ball(scene_.hop_height))) {
+      --proof_.lift_offs;
+      note_jump(height.all.value, "a lift-off as high as the jump threshold");
+      continue;
+    }
     if (proof_.lift_offs == 1) {
       proof_.spurious_first_jump = static_cast<std::uint8_t>(is_jump ? 0 : 1);
       if (counts_) proof_.first_height = enclosure_of(height.all.value);
       proof_.first_time = time_at(leg, x);
     }
     if (!is_jump) continue;
-    if (!counts_) throw Undecided{appears};
+    if (!counts_) note_jump(height.all.value, appears);
     proof_.height = enclosure_of(height.all.value);
     proof_.time = time_at(leg, x);
     return End::jump;
@@ -224,7 +251,14 @@ template <std::size_t N>
 Proof Walk<N>::ended(Status status) {
   if (!counts_ && proof_.lift_offs == 0) throw Undecided{appears};
   if (!counts_) proof_.lift_offs = -1;
-  proof_.proved = true;
+  if (may_jump_) {
+    if (status != Status::jumped) throw Undecided{event_};
+    const Ball height = hull(*may_jump_, Ball::between(proof_.height.low, proof_.height.high));
+    Proof either;
+    either.open = event_, either.all_jump = true, either.height = enclosure_of(height);
+    return either;
+  }
+  proof_.proved = true, proof_.all_jump = status == Status::jumped;
   proof_.status = status;
   return proof_;
 }

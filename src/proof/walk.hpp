@@ -52,6 +52,8 @@ class Walk {
   End look_for_jump(const Leg& leg, const Ball& end);
   Both<TakingOff, N> taking_off(const Leg& leg, const BothNumbers<N>& x) const;
   BothNumbers<N> flight_at(const Leg& leg, const BothNumbers<N>& x) const;
+  void note_jump(const Ball& height, const char* event);
+  void may_jump(const Leg& leg, double from, double to, const char* event);
   bool may_be_passed_over(const Leg& leg, double from, double to) const;
   Enclosure time_at(const Leg& leg, const BothNumbers<N>& x);
 
@@ -62,10 +64,12 @@ class Walk {
   Proof ended(Status status);
 
   Proof proof_;
-  Ball release_ = Ball(0);  ///< where the leg begins, as lift-offs are told apart there
-  bool counts_ = true;      ///< all designs have as many lift-offs
-  Ball time_ = Ball(0);     ///< from the release to where it was told last
-  Ball timed_ = Ball(0);    ///< where that is, past the beginning of the leg
+  Ball release_ = Ball(0);          ///< where the leg begins, as lift-offs are told apart there
+  std::optional<Ball> may_jump_{};  ///< heights of jumps that some designs make, and others pass over
+  const char* event_ = nullptr;     ///< of the last of them
+  bool counts_ = true;              ///< all designs have as many lift-offs
+  Ball time_ = Ball(0);             ///< from the release to where it was told last
+  Ball timed_ = Ball(0);            ///< where that is, past the beginning of the leg
 };
 
 inline Enclosure enclosure_of(const Ball& ball) { return {ball.lower(), ball.upper()}; }

@@ -35,6 +35,14 @@ enum class Reached { all, none, some };
 
 /// Whether all hoops of a box of one outcome reach the goals.
 Reached reach(const std::vector<Goal>& goals, const Proof& proof) {
+  if (!proof.proved) {  // what is known is that all jump, and between which heights
+    const bool others = std::ranges::any_of(
+        goals, [](const Goal& goal) { return goal.field != "jump_height" && goal.field != "status"; });
+    if (!proof.all_jump || others) return Reached::some;
+    Proof jumped = proof;
+    jumped.proved = true, jumped.status = Status::jumped;
+    return reach(goals, jumped);
+  }
   if (proof.status == Status::failed) return Reached::some;  // nothing is known of it
   if (proof.status != Status::jumped) {
     const bool asked_for = std::ranges::any_of(goals, [](const Goal& goal) {
@@ -216,8 +224,11 @@ class Search {
         found_.answer = WorstCase::Answer::counterexample;
     }
     const Proof& proof = looked.proof;
-    const bool reaches = proof.proved && reach(spec_.goals, proof) == Reached::all;
-    if (!proof.proved) event_ = proof.open, found_.open_at = sample(looked.part.box).front();
+    const bool reaches = reach(spec_.goals, proof) == Reached::all;
+    if (!reaches) {
+      event_ = proof.proved ? "a height beside a goal" : proof.open;
+      found_.open_at = sample(looked.part.box).front();
+    }
     const bool may_be_lower = proof.height.low < lowest_found_ - options_.resolution;
     if (reaches && (varying_.empty() || !may_be_lower)) {
       lowest_done_ = std::min(lowest_done_, proof.height.low);
@@ -230,6 +241,10 @@ class Search {
     const auto member = varying_[looked.part.cuts % varying_.size()];
     const DesignBox& box = looked.part.box;
     const double middle = box.from.*member + 0.5 * (box.to.*member - box.from.*member);
+    if (!(box.from.*member < middle && middle < box.to.*member)) {  // no double lies between
+      lowest_done_ = reaches ? std::min(lowest_done_, proof.height.low) : -HUGE_VAL;
+      return;
+    }
     Part low = looked.part, high = low;
     low.box.to.*member = high.box.from.*member = middle;
     for (Part* half : {&low, &high}) {

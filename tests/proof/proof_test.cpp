@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <set>
+
 #include "leapmap/leapmap.hpp"
 #include "leapmap/worst_case.hpp"
 #include "proof/acting.hpp"
@@ -347,6 +349,25 @@ TEST(WorstCases, MayBeOfHoopsThatMustNotJump) {
   EXPECT_EQ(found.answer, WorstCase::Answer::proved);
   EXPECT_EQ(found.boxes, 1);
   EXPECT_TRUE(std::isnan(found.height.low));
+}
+
+TEST(WorstCases, HoldAcrossAFoldWhereALiftOffAppears) {
+  Spec spec;  // a hoop from a drawing on slopes from 18 to 34.8 deg; at 23.4 deg its first lift-off appears
+  spec.design.mass_ratio = 1.5901639344262295, spec.design.offset_ratio = 0.6245704467353952;
+  spec.design.inertia_factor = 1.1491174206148012, spec.design.slope = 26.4 * std::numbers::pi / 180.0;
+  const double width = 8.4 * std::numbers::pi / 180.0;
+  spec.scatter.spreads = {{"slope", Spread::Law::uniform, width}};
+  const WorstCase found = worst_case(spec);
+  EXPECT_EQ(found.answer, WorstCase::Answer::proved);
+  std::set<int> lift_offs;
+  for (int n = 0; n <= 4000; ++n) {
+    Design made = spec.design;
+    made.slope += width * (n / 2000.0 - 1.0);
+    const Outcome outcome = solve(made);
+    lift_offs.insert(outcome.candidates);
+    EXPECT_GE(outcome.jump_height, found.height.low) << testing::told(made);
+  }
+  EXPECT_EQ(lift_offs, (std::set{1, 2})) << "a discontinuity is crossed";
 }
 
 TEST(WorstCases, StayWithinWhatADesignMayBe) {
