@@ -71,6 +71,11 @@ LOOKS = {
     "jump_time_q05": Look("5 % quantile of the jump time, manufactured", "s", "cividis_r", ink="black"),
     "jump_time_q50": Look("median jump time, manufactured", "s", "cividis_r", ink="black"),
     "jump_time_q95": Look("95 % quantile of the jump time, manufactured", "s", "cividis_r", ink="black"),
+    "jump_height_low": Look("least proved jump height of the cell", "hoop diameters", exponent=0.6,
+                            levels=HEIGHTS),
+    "jump_height_high": Look("largest proved jump height of the cell", "hoop diameters", exponent=0.6,
+                             levels=HEIGHTS),
+    "proof": Look("what is proved of the cell: 1 one outcome, 2 crossed, 3 open", "", levels=()),
     "agility": Look("agility: height over time from release to apex", "m/s", "plasma", log=True, star="black",
                     levels=(0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0, 2.0)),
     # it has cliffs of its own
