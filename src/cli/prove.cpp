@@ -88,9 +88,6 @@ int prove_cells(const ProveArguments& arguments, Spec spec) {
   if (spec.output.fields.empty())
     spec.output.fields = {"status", "spurious_first_jump", "candidates", "jump_height", "jump_time"};
   for (const Field& field : proof_fields()) {
-    const bool is_of_time =
-        *field.of_proof == ProofColumn::time_low || *field.of_proof == ProofColumn::time_high;
-    if (is_of_time && !spec.axes.empty()) continue;  // told of single designs
     if (std::ranges::find(spec.output.fields, field.name) == spec.output.fields.end())
       spec.output.fields.emplace_back(field.name);
   }

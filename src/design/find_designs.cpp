@@ -329,6 +329,8 @@ void prove_worst(const Question& question, const FindOptions& options, FoundDesi
   for (FoundDesign& one : found.designs) {
     Spec within = question.one;
     within.design = one.design;
+    for (const Goal& goal : question.made_goals)
+      if (goal.field == "worst_case") within.goals.push_back({"jump_height", goal.at_least, goal.at_most});
     one.worst = worst_case(
         within,
         {.threads = options.threads, .most_boxes = most_boxes, .stop_requested = options.stop_requested});
@@ -336,6 +338,11 @@ void prove_worst(const Question& question, const FindOptions& options, FoundDesi
       if (question.objectives[k].name == "worst_case" && !std::isnan(one.worst->height.low))
         one.objectives[k] = one.worst->height.low;
   }
+  // What the samples of the search have not met may miss a goal all the same.
+  if (found.reached)
+    std::erase_if(found.designs, [](const FoundDesign& one) {
+      return one.worst->answer == WorstCase::Answer::counterexample;
+    });
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ struct Proof {
   std::uint8_t spurious_first_jump = Outcome::no_lift_off;
   long lift_offs = 0;  ///< up to the jump, which is included; -1: the number differs between designs
   Enclosure height{};  ///< of the jump [hoop diameters]
-  Enclosure time{};    ///< from release to its lift-off [s]; known of single designs only
+  Enclosure time{};    ///< from release to its lift-off [s]; NaN if not asked for, or not known
   Enclosure first_height{}, first_time{};  ///< of the first lift-off
 };
 
@@ -47,7 +47,8 @@ bool can_prove();
 /// program that was built without Arb.
 Proof prove(const Design& design, const Scene& scene = {});
 
-/// The same of all designs of a box, of which up to seven parameters may vary. Times are not enclosed.
-Proof prove(const DesignBox& box, const Scene& scene = {});
+/// The same of all designs of a box, of which up to seven parameters may vary. times: enclose times, too,
+/// which costs half as much again, of hoops that do not turn round before.
+Proof prove(const DesignBox& box, const Scene& scene = {}, bool times = false);
 
 }  // namespace leapmap

@@ -6,7 +6,7 @@ namespace leapmap {
 
 bool can_prove() { return false; }
 
-Proof prove(const DesignBox&, const Scene&) {
+Proof prove(const DesignBox&, const Scene&, bool) {
   throw InputError(
       "this leapmap was built without Arb, with which proofs compute; allowed: with libflint-arb-dev "
       "(Debian), "

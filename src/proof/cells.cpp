@@ -86,7 +86,7 @@ DesignBox within_rounding(const Design& design) {
   return box;
 }
 
-CellProof prove_cell(const DesignBox& box, const Scene& scene) {
+CellProof prove_cell(const DesignBox& box, const Scene& scene, bool times) {
   constexpr long most_boxes = 160;
   constexpr std::size_t cuts_an_axis = 7;
   std::vector<double Design::*> varying;
@@ -112,16 +112,17 @@ CellProof prove_cell(const DesignBox& box, const Scene& scene) {
     return proof.proved && differs(outcome_kind(proof), design);
   };
   std::vector<Part> todo{{box}};
-  bool is_open = false;
+  bool is_open = false, is_timed = true;
   while (!todo.empty()) {
     throw_if_stopped();
     const Part part = todo.back();
     todo.pop_back();
     ++cell.boxes;
-    const Proof proof = prove(part.box, scene);
+    const Proof proof = prove(part.box, scene, times);
     if (proof.proved) {
       if (differs(outcome_kind(proof), designs_of(part.box, varying).front())) return cell;
       widen(cell.height, proof.height), widen(cell.time, proof.time);
+      is_timed = is_timed && !std::isnan(proof.time.low);
       continue;
     }
     for (const Design& design : designs_of(part.box, varying))
@@ -133,7 +134,8 @@ CellProof prove_cell(const DesignBox& box, const Scene& scene) {
     for (const Part& half : halves(part, varying)) todo.push_back(half);
   }
   cell.finding = is_open ? CellFinding::open : CellFinding::proved;
-  if (is_open) cell.height = cell.time = {};
+  if (is_open) cell.height = {};
+  if (is_open || !is_timed) cell.time = {};
   return cell;
 }
 
@@ -168,12 +170,15 @@ DesignBox Cells::box(std::size_t design) const {
   return box;
 }
 
-ProofColumns::ProofColumns(const Spec& spec) : spec_(spec), cells_(spec) {}
+ProofColumns::ProofColumns(const Spec& spec)
+    : spec_(spec), cells_(spec), times_(std::ranges::any_of(spec.output.fields, [](const std::string& name) {
+        return name == "jump_time_low" || name == "jump_time_high";
+      })) {}
 
 void ProofColumns::prove(const Tiling& tiling, const Tile& tile, std::size_t first, std::size_t count) {
   for (std::vector<double>& column : columns_) column.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const CellProof cell = prove_cell(cells_.box(tiling.number(tile, first + i)), spec_.scene);
+    const CellProof cell = prove_cell(cells_.box(tiling.number(tile, first + i)), spec_.scene, times_);
     const auto put = [&](ProofColumn column, double value) {
       columns_[static_cast<std::size_t>(column)][i] = value;
     };

@@ -36,7 +36,7 @@ struct CellProof {
 DesignBox within_rounding(const Design& design);
 
 /// Proves a box as a whole or in parts. Throws as prove does.
-CellProof prove_cell(const DesignBox& box, const Scene& scene);
+CellProof prove_cell(const DesignBox& box, const Scene& scene, bool times = false);
 
 /// The cells of a spec's map: all designs nearer to one of its designs than to its neighbours along each
 /// axis; of a list each design itself.
@@ -64,6 +64,7 @@ class ProofColumns {
  private:
   const Spec& spec_;
   Cells cells_;
+  bool times_;
   std::array<std::vector<double>, proof_columns> columns_;
 };
 

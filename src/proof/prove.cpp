@@ -16,7 +16,8 @@ namespace leapmap {
 namespace {
 
 template <std::size_t N>
-Proof walk(const DesignBox& box, const std::vector<double Design::*>& varying, const Scene& scene) {
+Proof walk(const DesignBox& box, const std::vector<double Design::*>& varying, const Scene& scene,
+           bool times) {
   // What does not vary stands for what is left over: its reach is none.
   std::array<double Design::*, N> members;
   for (std::size_t k = 0, other = 0; k < N; ++k) {
@@ -28,7 +29,7 @@ Proof walk(const DesignBox& box, const std::vector<double Design::*>& varying, c
     members[k] = acting[other++];
   }
   try {
-    return Walk<N>(box, members, scene).prove();
+    return Walk<N>(box, members, scene, times).prove();
   } catch (const Undecided& undecided) {
     return {.open = undecided.event};
   }
@@ -38,7 +39,7 @@ Proof walk(const DesignBox& box, const std::vector<double Design::*>& varying, c
 
 bool can_prove() { return true; }
 
-Proof prove(const DesignBox& box, const Scene& scene) {
+Proof prove(const DesignBox& box, const Scene& scene, bool times) {
   check_scene(scene);
   for (const auto member : acting)
     if (!(box.from.*member <= box.to.*member))
@@ -54,20 +55,22 @@ Proof prove(const DesignBox& box, const Scene& scene) {
     if (box.from.*member != box.to.*member) varying.push_back(member);
   switch (varying.size()) {
     case 0:
-      return walk<0>(box, varying, scene);
+      return walk<0>(box, varying, scene, times);
     case 1:
-      return walk<1>(box, varying, scene);
+      return walk<1>(box, varying, scene, times);
     case 2:
-      return walk<2>(box, varying, scene);
+      return walk<2>(box, varying, scene, times);
     case 3:
-      return walk<3>(box, varying, scene);
+      return walk<3>(box, varying, scene, times);
     case 8:
       throw InputError("a box in eight parameters cannot be proved; allowed: up to seven");
     default:
-      return walk<7>(box, varying, scene);
+      return walk<7>(box, varying, scene, times);
   }
 }
 
-Proof prove(const Design& design, const Scene& scene) { return prove(DesignBox{design, design}, scene); }
+Proof prove(const Design& design, const Scene& scene) {
+  return prove(DesignBox{design, design}, scene, true);
+}
 
 }  // namespace leapmap

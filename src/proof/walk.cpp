@@ -237,12 +237,16 @@ auto Walk<N>::look_for_jump(const Leg& leg, const Ball& end) -> End {
   return leg.number == 3 ? End::back : End::runway;
 }
 
-/// Time from the release to x on the leg [s].
+/// Time from the release to x on the leg [s]; of boxes of the first leg only.
 template <std::size_t N>
 Enclosure Walk<N>::time_at(const Leg& leg, const BothNumbers<N>& x) {
-  if constexpr (N > 0) return {};
   const Ball second = sqrt(Ball(scene_.radius) * Ball(box_.from.size) / Ball(scene_.gravity));
-  time_ = time_ + travel_time(leg.roll.middle, timed_, x.middle), timed_ = x.middle;
+  if constexpr (N == 0) {
+    time_ = time_ + travel_time(leg.roll.middle, timed_, x.middle), timed_ = x.middle;
+  } else {
+    if (!times_ || leg.number > 1) return {};
+    time_ = travel_time(forms_, leg.roll, x);
+  }
   const Ball told = time_ * second;
   return told.is_finite() ? enclosure_of(told) : Enclosure{};
 }

@@ -12,9 +12,9 @@ namespace leapmap {
 template <std::size_t N>
 class Walk {
  public:
-  /// Parameters that vary come first in `varying`, as members of a Design.
-  Walk(const DesignBox& box, const std::array<double Design::*, N>& varying, const Scene& scene)
-      : box_(box), varying_(varying), scene_(scene) {
+  /// varying: the parameters that vary. times: of the lift-offs, asked for.
+  Walk(const DesignBox& box, const std::array<double Design::*, N>& varying, const Scene& scene, bool times)
+      : box_(box), varying_(varying), scene_(scene), times_(times) {
     for (std::size_t k = 0; k < N; ++k) {
       const double from = box.from.*varying[k], to = box.to.*varying[k], middle = from + 0.5 * (to - from);
       forms_.reach[k] = Ball::between(from, to) - Ball(middle);
@@ -60,6 +60,7 @@ class Walk {
   const DesignBox& box_;
   std::array<double Design::*, N> varying_;
   const Scene& scene_;
+  bool times_;
   Forms<N> forms_{};
   Proof ended(Status status);
 

@@ -68,10 +68,11 @@ def test_cells_of_a_grid_are_proved_and_hold_their_designs(tmp_path):
         assert m["proof"].dtype == np.uint8
         assert m["proof"].attrs["flag_meanings"] == "not_computed proved crossed open"
         height = m["jump_height"][()]
-        assert "jump_time_low" not in m, "times are enclosed of single designs"
+        soonest, latest, time = (m[name][()] for name in ("jump_time_low", "jump_time_high", "jump_time"))
     assert set(np.unique(proof)) <= {1, 2, 3} and (proof == 1).mean() > 0.9
     assert (np.isnan(low) == (proof != 1)).all(), "all of this chart jumps"
     assert ((low <= height) & (height <= high))[proof == 1].all()
+    assert ((soonest <= time) & (time <= latest))[proof == 1].all()
     assert leapmap("check", tmp_path / "p.h5").returncode == 0
     told = leapmap("info", tmp_path / "p.h5").stdout
     assert re.search(rf"^proof\n +{(proof == 1).sum()} +.*proved", told, re.M), told
@@ -188,3 +189,22 @@ maximize = ["worst_case"]
     assert normal.returncode == 2 and "tolerances.slope" in normal.stderr and "uniform" in normal.stderr
     slips = leapmap("design", tmp_path / "q.toml", "--set", "friction=coulomb")
     assert slips.returncode == 2 and "worst_case" in slips.stderr
+
+
+def test_a_worst_case_that_is_a_goal_is_proved_of_what_is_found(tmp_path):
+    (tmp_path / "q.toml").write_text(
+        """
+[design]
+mass_ratio = { from = 1, to = 5 }
+[tolerances]
+slope = { uniform = "1 deg" }
+samples = 32
+[goal]
+worst_case = { at_least = 0.8 }
+minimize = ["mass_ratio"]
+""", encoding="utf-8")
+    best = json.loads(leapmap("design", tmp_path / "q.toml", "--json").stdout)["designs"][0]
+    assert best["worst_case"]["proved"] and best["worst_case"]["jump_height"][0] >= 0.8
+    assert best["worst_case"]["jump_height"][1] == pytest.approx(0.8, abs=1e-3), "no more than it has to"
+    missed = leapmap("design", tmp_path / "q.toml", "--set", "goal.worst_case={at_least=2.9}")
+    assert missed.returncode == 1 and "worst_case at least 2.9" in missed.stdout
