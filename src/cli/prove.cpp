@@ -20,6 +20,7 @@
 #include "map/writer.hpp"
 #include "proof/cells.hpp"
 #include "spec/map_spec.hpp"
+#include "spec/options.hpp"
 #include "spec/spec_hoop.hpp"
 #include "support/output_file.hpp"
 #include "support/printable.hpp"
@@ -153,13 +154,29 @@ int prove_hoops(const ProveArguments& arguments, const Spec& spec) {
   return found.answer == WorstCase::Answer::counterexample ? 1 : 0;
 }
 
+/// What lies between bounds, { from, to } without a count, is a tolerance about their middle.
+Spec without_bounds(Spec spec) {
+  for (const Axis& axis : spec.axes) {
+    if (!axis.free) continue;
+    const Option* option = find_option("design", axis.key);
+    if (!option || !member_of(*option))
+      throw InputError(fmt::format("{}: {}: is between bounds; allowed: parameters of a design",
+                                   origin_of(spec), axis.key));
+    const auto [from, to] = std::ranges::minmax(axis.values);
+    spec.design.*member_of(*option) = from + 0.5 * (to - from);
+    spec.scatter.spreads.push_back({axis.key, Spread::Law::uniform, 0.5 * (to - from)});
+  }
+  std::erase_if(spec.axes, [](const Axis& axis) { return axis.free; });
+  return spec;
+}
+
 int run(const ProveArguments& arguments) {
   if (arguments.input.ends_with(".h5")) {
     if (!arguments.overrides.empty()) throw InputError("--set: a map has its own spec; allowed: with a spec");
     return prove_map(arguments);
   }
   if (arguments.share > 0.0) throw InputError("--share: has no effect with a spec; allowed: with a map");
-  const Spec spec = read_given_spec(arguments.input, arguments.overrides);
+  const Spec spec = without_bounds(read_given_spec(arguments.input, arguments.overrides));
   if (spec.axes.empty() && spec.points.empty()) return prove_hoops(arguments, spec);
   return prove_cells(arguments, spec);
 }

@@ -338,7 +338,7 @@ void prove_worst(const Question& question, const FindOptions& options, FoundDesi
       if (question.objectives[k].name == "worst_case" && !std::isnan(one.worst->height.low))
         one.objectives[k] = one.worst->height.low;
   }
-  // What the samples of the search have not met may miss a goal all the same.
+  // A hoop that the samples of the search have not met may miss the goal all the same.
   if (found.reached)
     std::erase_if(found.designs, [](const FoundDesign& one) {
       return one.worst->answer == WorstCase::Answer::counterexample;

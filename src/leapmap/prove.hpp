@@ -48,7 +48,7 @@ bool can_prove();
 Proof prove(const Design& design, const Scene& scene = {});
 
 /// The same of all designs of a box, of which up to seven parameters may vary. times: enclose times, too,
-/// which costs half as much again, of hoops that do not turn round before.
+/// at half the cost on top, of hoops that do not turn round before.
 Proof prove(const DesignBox& box, const Scene& scene = {}, bool times = false);
 
 }  // namespace leapmap

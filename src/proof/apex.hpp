@@ -86,7 +86,7 @@ struct Steps {
 template <class F, std::size_t N>
 auto search(const Forms<N>& forms, const Both<TakingOff, N>& off, const Steps& steps, double from,
             double to) {
-  constexpr double most_pieces = 20'000.0;
+  constexpr double most_pieces = 200'000.0;
   if (!((to - from) / steps.step < most_pieces)) throw Undecided{"a flight of too many turns"};
   return ZeroSearch([&](double a, double b) { return forms.range(F{}, off, a, b); }, from, to, steps.step,
                     steps.smallest);

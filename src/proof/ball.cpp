@@ -24,6 +24,10 @@ Ball x_minus_sin_of(const arf_t x) {
 
 Ball Ball::between(double from, double to) {
   Ball all;
+  if (!(from <= to)) {  // not known
+    arb_indeterminate(all.x_);
+    return all;
+  }
   arf_t a, b;
   arf_init(a), arf_init(b);
   arf_set_d(a, from), arf_set_d(b, to);

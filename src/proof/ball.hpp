@@ -33,7 +33,7 @@ class Ball {
   }
   ~Ball() { arb_clear(x_); }
 
-  /// All numbers from one to another.
+  /// All numbers from one to another; not finite if they are not in order.
   static Ball between(double from, double to);
   static Ball pi() {
     Ball all;

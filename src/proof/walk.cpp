@@ -167,6 +167,10 @@ bool Walk<N>::may_be_passed_over(const Leg& leg, double from, double to) const {
 template <std::size_t N>
 void Walk<N>::note_jump(const Ball& height, const char* event) {
   if (N == 0 || !height.is_finite()) throw Undecided{event};
+  if (height < Ball(scene_.hop_height)) {  // none does, as is seen now
+    counts_ = false;
+    return;
+  }
   const Ball jumps = Ball::between(std::max(height.lower(), scene_.hop_height), height.upper());
   may_jump_ = may_jump_ ? hull(*may_jump_, jumps) : jumps;
   event_ = event;

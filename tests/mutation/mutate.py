@@ -134,7 +134,7 @@ def proved_designs(folder):
             "drive_torque": draw.uniform(-0.1, 0.3) if n % 3 else 0.0, "resisting_torque": 0.0
         }
         if n == 9:  # uphill by its motor
-            design |= {"slope": 0.05, "drive_torque": -0.6, "release_angle": 3.0}
+            design |= {"slope": 0.05, "drive_torque": -0.6, "release_angle": 3.0, "release_spin": 0.0}
         flags = [w for name, v in design.items() for w in (f"--{name.replace('_', '-')}", repr(v))]
         told = json.loads(subprocess.run([program, "hop", *flags, "--prove", "--json"], check=True,
                                          capture_output=True, text=True).stdout)
