@@ -35,7 +35,7 @@ HEADERS = (
     ("Sweeps and maps", ("spec", "sweep", "audit", "join", "map")),
     (
         "Discontinuities, tolerances, searches, fits",
-        ("boundaries", "estimate", "scatter", "find_designs", "film", "fit"),
+        ("boundaries", "estimate", "scatter", "prove", "worst_case", "find_designs", "film", "fit"),
     ),
     ("Errors and versions", ("errors", "version")),
 )

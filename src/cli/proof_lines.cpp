@@ -109,6 +109,8 @@ std::string worst_case_line(const WorstCase& found) {
                        told(found.height));
   return found.answer == WorstCase::Answer::counterexample
              ? "worst case: a hoop within the tolerances does not jump, or misses a goal"
+         : found.answer == WorstCase::Answer::proved
+             ? "worst case: proved, every hoop within the tolerances reaches the goals"
              : fmt::format("worst case: open, {}", found.open);
 }
 

@@ -16,6 +16,7 @@
 #include "leapmap/map.hpp"
 #include "leapmap/motion.hpp"
 #include "leapmap/outcome.hpp"
+#include "leapmap/prove.hpp"
 #include "leapmap/scatter.hpp"
 #include "leapmap/scene.hpp"
 #include "leapmap/solve.hpp"
@@ -24,3 +25,4 @@
 #include "leapmap/trace.hpp"
 #include "leapmap/units.hpp"
 #include "leapmap/version.hpp"
+#include "leapmap/worst_case.hpp"

@@ -13,6 +13,7 @@
 #include "leapmap/errors.hpp"
 #include "leapmap/solve.hpp"
 #include "model/fields.hpp"
+#include "proof/cells.hpp"
 #include "spec/options.hpp"
 
 namespace leapmap {
@@ -266,9 +267,10 @@ class Search {
     }
     found_.answer = WorstCase::Answer::proved;
     if (!found_.worst) return;
-    // That hoop jumps no higher than is proved of it.
-    const Proof worst = prove(*found_.worst, spec_.scene);
-    if (worst.proved) found_.height = {low, worst.height.high};
+    // That hoop jumps no higher than is proved of it, or of those about it, if it is beside a discontinuity.
+    Proof worst = prove(*found_.worst, spec_.scene);
+    if (!worst.proved) worst = prove(within_rounding(*found_.worst), spec_.scene);
+    if (worst.all_jump) found_.height = {low, worst.height.high};
   }
 
   const Spec& spec_;
