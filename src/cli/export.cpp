@@ -87,7 +87,9 @@ void choose_units(std::vector<Column>& columns, ShownUnits& units, const Spec& s
     // What the hoops share in the SI is read back as that, unless another unit is asked for.
     if (si && column.shown.factor == 1.0) column.shown = {std::string(si->name), si->size};
   }
-  units.refuse_unused();
+  for (const std::string& unit : units.without_column())
+    tell(fmt::format("--units: no column of this map is in {}; a quantity that is, output.fields may name",
+                     unit));
   if (!mass_varies(spec) && !find_varying(spec, "hoop.diameter")) return;
   scales.mass *= 2.0, scales.radius *= 3.0;
   for (Column& column : columns)

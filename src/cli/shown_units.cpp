@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -130,6 +131,19 @@ void ShownUnits::refuse_unusable(const Scene& scene, const std::vector<std::stri
   for (const std::string& parameter : parameters) of(parameter);
   for (const Field* field : fields_of(scene)) of(*field);
   refuse_unused();
+}
+
+std::vector<std::string> ShownUnits::without_column() const {
+  std::vector<std::string> without;
+  for (std::size_t k = 0; k < units_.size(); ++k) {
+    if (used_[k]) continue;
+    const bool fits = std::ranges::any_of(map_fields(), [&](const Field& field) {
+      return units_in_own(units_[k], own_unit(field), scales_).has_value();
+    });
+    if (!fits) refuse_unused();
+    without.push_back(units_[k]);
+  }
+  return without;
 }
 
 void ShownUnits::refuse_unused() const {

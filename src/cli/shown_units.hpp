@@ -46,6 +46,9 @@ class ShownUnits {
   void refuse_unusable(const Scene& scene, const std::vector<std::string>& parameters = {});
   /// Throws InputError if a unit has fitted nothing.
   void refuse_unused() const;
+  /// The units that have fitted nothing, though some quantity of a hoop of that size and mass is in them.
+  /// Throws InputError for one that no quantity is in.
+  std::vector<std::string> without_column() const;
 
  private:
   ShownUnit choose(std::string_view own, bool is_torque);

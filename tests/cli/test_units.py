@@ -462,6 +462,18 @@ fields = ["jump_height", "jump_time", "status", "phase_sequence", "candidates", 
         assert np.allclose(m["jump_height"][:], values["jump_height"], rtol=1e-9, atol=0, equal_nan=True)
 
 
+def test_a_unit_that_another_quantity_is_in_is_noted(drawing, tmp_path):
+    """A hoop that is weighed has newtons, though this map stores no force."""
+    path = tmp_path / "m.h5"
+    assert leapmap("sweep", drawing, "--hoop.slug.mass", '{from="60 g",to="110 g",count=3}', "--set",
+                   "slope=0.4", "-o", path).returncode == 0
+    done = leapmap("export", path, "-o", tmp_path / "t.csv", "--units", "mm g deg N")
+    assert done.returncode == 0 and done.stderr.count("\n") == 1, done.stderr
+    assert "no column of this map is in N;" in done.stderr
+    header = (tmp_path / "t.csv").read_text(encoding="utf-8").splitlines()[0]
+    assert "hoop.slug.mass [g]" in header and "jump_height [mm]" in header
+
+
 def test_a_table_is_refused_where_it_cannot_be(tmp_path):
     path = sweep(tmp_path)
     (tmp_path / "there.csv").write_text("mine\n")
