@@ -36,6 +36,7 @@ def test_a_map_is_what_is_proved_until_a_number_of_it_is_changed(tmp_path):
     path = sweep(tmp_path, SMALL)
     right = leapmap("prove", path)
     assert right.returncode == 0 and "proved   63 of 63 designs" in right.stdout, right.stdout
+    assert leapmap("prove", path, "-q").stdout == ""
     with h5py.File(path, "r+") as m:
         height = m["jump_height"][()]
         height[4, 3] *= 1 + 1e-9
@@ -43,6 +44,7 @@ def test_a_map_is_what_is_proved_until_a_number_of_it_is_changed(tmp_path):
     wrong = leapmap("prove", path)
     assert wrong.returncode == 1
     assert re.search(r"WRONG    design 31: jump_height \S+ outside the proved \[.*leapmap hop", wrong.stdout)
+    assert leapmap("prove", path, "-q").stdout.startswith("WRONG")
     share = leapmap("prove", path, "--share", "0.1")
     assert "of 7 designs, of 63 in the map" in share.stdout
 
