@@ -229,8 +229,10 @@ auto Walk<N>::look_for_jump(const Leg& leg, const Ball& end) -> End {
     }
     if (proof_.lift_offs == 1) {
       proof_.spurious_first_jump = static_cast<std::uint8_t>(is_jump ? 0 : 1);
-      if (counts_) proof_.first_height = enclosure_of(height.all.value);
-      proof_.first_time = time_at(leg, x);
+      if (counts_) {  // else another may be the first
+        proof_.first_height = enclosure_of(height.all.value);
+        proof_.first_time = time_at(leg, x);
+      }
     }
     if (!is_jump) continue;
     if (!counts_) note_jump(height.all.value, appears);
