@@ -112,11 +112,12 @@ MUTATIONS = {
 }
 
 
-# Those that act on a hoop without slip, from its release to the apex of its jump.
+# Those that change height or time of a jump without slip. Two more do not, which the referee finds by the apex
+# and the landing: "flight, y'", as the apex is found again by y itself, and "seen from behind".
 WITHOUT_SLIP = [
     "mass of the bare hoop", "rho", "1 - rho", "Ic", "least J", "J", "sin(theta + phi)", "cos(theta + phi)",
     "w^2 by angle", "level of energy", "energy's slope", "G, rest", "G, energy", "thrust", "G, motor",
-    "seen from behind", "flight, y", "flight, y'", "flight, gravity", "flight, motor", "radius and gravity"
+    "flight, y", "flight, gravity", "flight, motor", "radius and gravity"
 ]
 STATUSES = ["not_computed", "jumped", "no_jump", "stalled", "airborne_at_release"]
 
