@@ -112,8 +112,8 @@ MUTATIONS = {
 }
 
 
-# Those that change height or time of a jump without slip. "flight, y'" does not, as the apex is found again by
-# y itself, nor "seen from behind", as blocks of the solver tell the torque by the thrust.
+# Those that change height or time of a jump without slip. "flight, y'" does not, as the apex is found again
+# by y itself, nor "seen from behind", as blocks of the solver know the torque by the thrust.
 WITHOUT_SLIP = [
     "mass of the bare hoop", "rho", "1 - rho", "Ic", "least J", "J", "sin(theta + phi)", "cos(theta + phi)",
     "w^2 by angle", "level of energy", "energy's slope", "G, rest", "G, energy", "thrust", "G, motor",
