@@ -203,9 +203,8 @@ void add_prove(CommandLine& line, int& status) {
   command.flag("-q,--quiet", arguments->quiet, "print errors and the map's name only");
   add_no_lock(command, arguments->locking);
   command.footer(
-      "By ball arithmetic (Arb), whose enclosures hold: no sampling, and no rule shared with the solvers. "
-      "The "
-      "model without slip, up to its first jump.\n"
+      "By ball arithmetic (Arb), whose enclosures hold of every design, of the model without slip up to its "
+      "first jump.\n"
       "Each cell of a grid is proved (all its designs have one outcome, and jump between two heights), "
       "crossed "
       "(two designs in it have different outcomes), or open.\n"

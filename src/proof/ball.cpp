@@ -20,6 +20,17 @@ Ball x_minus_sin_of(const arf_t x) {
   return sine;
 }
 
+/// The bound that `get` tells, as a double that is rounded outwards.
+template <class Get>
+double bound_of(const arb_t x, Get get, arf_rnd_t outwards) {
+  arf_t bound;
+  arf_init(bound);
+  get(bound, x, Ball::precision);
+  const double outside = arf_get_d(bound, outwards);
+  arf_clear(bound);
+  return outside;
+}
+
 }  // namespace
 
 Ball Ball::between(double from, double to) {
@@ -45,23 +56,8 @@ Ball meet(const Ball& a, const Ball& b) {
   return both;
 }
 
-double Ball::lower() const {
-  arf_t bound;
-  arf_init(bound);
-  arb_get_lbound_arf(bound, x_, precision);
-  const double lower = arf_get_d(bound, ARF_RND_FLOOR);
-  arf_clear(bound);
-  return lower;
-}
-
-double Ball::upper() const {
-  arf_t bound;
-  arf_init(bound);
-  arb_get_ubound_arf(bound, x_, precision);
-  const double upper = arf_get_d(bound, ARF_RND_CEIL);
-  arf_clear(bound);
-  return upper;
-}
+double Ball::lower() const { return bound_of(x_, arb_get_lbound_arf, ARF_RND_FLOOR); }
+double Ball::upper() const { return bound_of(x_, arb_get_ubound_arf, ARF_RND_CEIL); }
 
 bool Ball::holds(double number) const { return arb_contains(x_, Ball(number).x_) != 0; }
 

@@ -15,6 +15,7 @@
 #include "model/fields.hpp"
 #include "proof/cells.hpp"
 #include "spec/options.hpp"
+#include "tolerance/made_hoops.hpp"
 
 namespace leapmap {
 namespace {
@@ -79,13 +80,6 @@ struct Part {
 
   bool operator<(const Part& other) const { return low > other.low; }  // the lowest first
 };
-
-/// The number of the range that is nearest: hoops are made within it.
-double inside(const Range& range, double value) {
-  if (value <= range.least) return range.least_allowed ? range.least : std::nextafter(range.least, HUGE_VAL);
-  if (value >= range.most) return range.most_allowed ? range.most : std::nextafter(range.most, -HUGE_VAL);
-  return value;
-}
 
 /// Tolerances as a box about the nominal design.
 DesignBox box_of(const Spec& spec, std::vector<double Design::*>& varying) {

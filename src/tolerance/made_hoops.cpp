@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -12,18 +11,11 @@
 #include "numerics/normal_law.hpp"
 
 namespace leapmap {
-namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-/// The value nearest to this one that a parameter may have.
 double inside(const Range& range, double value) {
-  if (value <= range.least) return range.least_allowed ? range.least : std::nextafter(range.least, infinity);
-  if (value >= range.most) return range.most_allowed ? range.most : std::nextafter(range.most, -infinity);
+  if (value <= range.least) return range.least_allowed ? range.least : std::nextafter(range.least, HUGE_VAL);
+  if (value >= range.most) return range.most_allowed ? range.most : std::nextafter(range.most, -HUGE_VAL);
   return value;
 }
-
-}  // namespace
 
 MadeHoops::MadeHoops(const Scatter& scatter, const std::optional<Body>& hoop, std::vector<SameInSi> held,
                      std::shared_ptr<const SobolPoints> points)

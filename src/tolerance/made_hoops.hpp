@@ -26,6 +26,9 @@ struct CutLaw {
 /// How much of a law has to be left at least: what is drawn at the end of a range, as L/R = 1, loses half.
 inline constexpr double least_left = 0.499;
 
+/// The value nearest to this one that a parameter may have: hoops are made within its range.
+double inside(const Range& range, double value);
+
 /// One a thread. Needs points of at least as many dimensions as the scatter has spreads.
 class MadeHoops {
  public:
