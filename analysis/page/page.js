@@ -86,7 +86,7 @@ export async function startLive(given, module, solver) {
   addressPart(settlePart(map));
   addressPart(controls);  // begins anew, by what is told above
   begin();
-  page = await start(map, solver, teller);  // which may begin anew, by what the address wants
+  page = await start(map, solver, teller);  // which may start the map again, by what the address wants
   if (early.size > 0) show(early.has("whole") ? "whole" : "part");
   if (early.has("cliffs")) show("cliffs");
 }

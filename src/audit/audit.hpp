@@ -91,7 +91,7 @@ class Auditor {
   const Spec& spec_;
   DesignSpace space_;
   AuditSolver second_, referee_;
-  Output proved_;  ///< what proofs tell of a design
+  Output proved_;  ///< the fields that proofs compare
   GradientAuditor gradients_;
   SequenceAuditor sequences_;
   GaitAuditor gaits_;

@@ -63,6 +63,10 @@ std::array<Part, 2> halves(const Part& part, const std::vector<double Design::*>
 
 }  // namespace
 
+void require_proofs() {
+  if (!can_prove()) static_cast<void>(prove(Design{}));  // which says why
+}
+
 OutcomeKind outcome_kind(const Proof& proof) {
   return {proof.status, proof.spurious_first_jump, proof.status == Status::jumped ? proof.lift_offs : 0};
 }
@@ -150,7 +154,7 @@ Cells::Cells(const Spec& spec) : spec_(spec), space_(spec) {
           fmt::format("{}: {}: what is proved is of boxes in the parameters of a design; allowed: "
                       "axes of mass_ratio, offset_ratio, inertia_factor and others",
                       origin_of(spec), axis.key));
-  if (!can_prove()) static_cast<void>(prove(Design{}));  // which says why
+  require_proofs();
 }
 
 DesignBox Cells::box(std::size_t design) const {

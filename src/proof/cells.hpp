@@ -14,6 +14,9 @@
 
 namespace leapmap {
 
+/// Throws InputError if this program cannot prove anything: before work that would end so.
+void require_proofs();
+
 /// Which outcome a design has, as discontinuities tell them apart.
 struct OutcomeKind {
   Status status;

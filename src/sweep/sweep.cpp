@@ -171,6 +171,7 @@ Report fill(const Spec& spec, const MapLayout& layout, const Tiling& tiling, con
 Report sweep(const Spec& spec, const std::string& path, const SweepOptions& asked) {
   check_spec(spec);
   if (wants_proofs(request_of(spec))) static_cast<void>(Cells(spec));  // before anything is written
+  if (spec.numerics.audit > 0.0 && spec.numerics.audit_by == "proof") require_proofs();
   if (!spec.goals.empty() && spec.scatter.spreads.empty())
     throw InputError(
         fmt::format("{}: goal.{} has no effect in a map of nominal hoops; allowed: with a parameter in "
