@@ -22,6 +22,18 @@ PARAMETERS = {
     "mu_kinetic": ("kinetic friction coefficient", "μ kinetic", ""),
     "restitution": ("restitution", "restitution", ""),
 }
+OF_PENDULUM = {
+    "pendulum_inertia": ("pendulum's own inertia I/(mₚ L²)", "own inertia", ""),
+    "pendulum_angle": ("pendulum's angle at release ψ", "ψ", "°"),
+    "pendulum_spin": ("pendulum's spin at release [√(g/R)]", "pendulum's spin", ""),
+    "motor_torque": ("motor's stall torque [(m + mₚ) g R]", "stall torque", ""),
+    "no_load_speed": ("motor's no-load speed [√(g/R)]", "no-load speed", ""),
+    "motor_target": ("motor's target [rad or √(g/R)]", "target", ""),
+    "motor_gain": ("motor's gain", "gain", ""),
+    "motor_damping": ("motor's damping", "damping", ""),
+}
+OF_HOOP = tuple(PARAMETERS)
+PARAMETERS |= OF_PENDULUM
 SI_OF_HELD = {"drive_torque": "N m", "resisting_torque": "N m", "release_spin": "rad/s"}
 # status -> colour and words where there is no jump to draw
 STATUSES = {
@@ -101,6 +113,8 @@ LOOKS = {
     "motor_energy": Look("work of the motor until the jump", "(m + mₚ) g R"),
     "motor_max_power": Look("largest power of the motor until the jump", "(m + mₚ) g √(g R)"),
     "motor_max_spin": Look("largest spin until the jump", "√(g/R)"),
+    "motor_max_torque": Look("largest torque of the motor until the jump", "(m + mₚ) g R"),
+    "efficiency": Look("weight times height over the motor's work", ""),
     "jump_distance": Look("distance travelled until the jump", "R"),
     "energy_lost": Look("energy lost until the jump", "(m + mₚ) g R"),
     "jumps": Look("number of jumps", "", levels=()),
@@ -317,6 +331,7 @@ def words_of(m, fixed):
     told = [
         k for k in PARAMETERS
         if k in fixed and (k not in contact or m.slips) and (not k.endswith("_torque") or fixed[k] != 0)
+        and (k not in OF_PENDULUM or (math.isfinite(fixed[k]) and fixed[k] != 0))
     ]
     numbers = m.numbers()
     return [

@@ -68,6 +68,12 @@ class Map:
             line.startswith("friction") and "coulomb" in line
             for line in self.attributes["spec"].splitlines())
 
+    @property
+    def has_pendulum(self):
+        """Whether it is of a hoop with a driven pendulum."""
+        return any(
+            line.startswith("model") and "pendulum" in line for line in self.attributes["spec"].splitlines())
+
     def computed(self):
         """Where designs are computed, as a boolean array; in a whole map, everywhere. Fields without status
         hold the same values where a design does not jump and where it was not computed yet."""
@@ -355,6 +361,7 @@ def _axes_of(file, dataset):
 
 BEYOND = 1e100  # no quantity of a hoop is as large
 BEYOND_SPEC = 1e15  # nor any number of a spec
+MAY_BE_INFINITE = ("no_load_speed", "motor_gain")  # of motors
 
 
 def _check_numbers(m, name, values, dimensions):
@@ -371,7 +378,7 @@ def _check_scene(m):
         raise NotAMap(f"{m.path}: is damaged: its attribute spec is no text")
     numbers = m.numbers()
     for key, value in numbers.items():
-        if not abs(value) < BEYOND_SPEC:
+        if not abs(value) < BEYOND_SPEC and not (key in MAY_BE_INFINITE and value == math.inf):
             raise NotAMap(f"{m.path}: is damaged: its spec says {key} = {value}")
     for key, least in (("radius", 0.0), ("gravity", 0.0), ("runway", 0.0), ("tolerance", 0.0), ("hop_height",
                                                                                                 -1e-300)):

@@ -31,6 +31,11 @@ set(LEAPMAP_KERNEL_SOURCES  # src/model/kernels.hpp
   src/noslip/model.cpp
   src/noslip/prepare.cpp
   src/integrate/rolling_integration.cpp
+  src/pendulum/integration.cpp
+  src/pendulum/model.cpp
+  src/pendulum/motion.cpp
+  src/pendulum/phases.cpp
+  src/pendulum/solver.cpp
   src/noslip/rolling_motion.cpp
   src/noslip/way.cpp
   src/trajectory/way.cpp
@@ -133,6 +138,8 @@ set(LEAPMAP_SOURCES
   src/referee/motion.cpp
   src/referee/referee.cpp
   src/referee/referee_coulomb.cpp
+  src/referee/robot.cpp
+  src/referee/robot_referee.cpp
   src/request/request.cpp
   src/request/solver.cpp
   src/shards/join.cpp

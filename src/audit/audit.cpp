@@ -15,6 +15,7 @@
 #include "leapmap/prove.hpp"
 #include "map/hdf5.hpp"
 #include "model/fields.hpp"
+#include "model/model.hpp"
 #include "model/variable.hpp"
 #include "numerics/mixed.hpp"
 #include "referee/referee.hpp"
@@ -232,19 +233,22 @@ std::vector<AuditSample> audit_samples(const MapReader& map, const Spec& spec, d
   return samples;
 }
 
-std::string audit_method(const Numerics& numerics) {
-  return resolved_method(numerics) == "exact" ? "gsl-rk8pd" : "exact";
+std::string audit_method(const Numerics& numerics, const Scene& scene) {
+  constexpr std::string_view first = "gsl-rk8pd", other = "gsl-rkck";
+  const std::string method = resolved_method(numerics, scene);
+  if (method != "exact" && model_of(scene).stepper.empty()) return "exact";
+  return std::string(method == first ? other : first);
 }
 
-std::string auditor_of(const Numerics& numerics) {
-  return numerics.audit_by == "proof" ? numerics.audit_by : audit_method(numerics);
+std::string auditor_of(const Numerics& numerics, const Scene& scene) {
+  return numerics.audit_by == "proof" ? numerics.audit_by : audit_method(numerics, scene);
 }
 
 AuditReport begin_audit(const Spec& spec) {
   AuditReport report;
-  report.method = auditor_of(spec.numerics);
+  report.method = auditor_of(spec.numerics, spec.scene);
   const double rounding = spec.output.precision == "f4" ? std::numeric_limits<float>::epsilon() : 0.0;
-  const double slack = resolved_method(spec.numerics) == "exact" ? 1.0 : adaptive_slack;
+  const double slack = resolved_method(spec) == "exact" ? 1.0 : adaptive_slack;
   report.allowed_error = std::max(spec.numerics.tolerance * slack, own_error) + rounding;
   return report;
 }
@@ -274,7 +278,7 @@ Solver solver_by_proof(const Spec& spec) {
 Solver second_solver(const Spec& spec, double tolerance) {
   if (spec.numerics.audit_by == "proof") return solver_by_proof(spec);
   Request request{.scene = spec.scene,
-                  .numerics = {.method = audit_method(spec.numerics), .tolerance = tolerance}};
+                  .numerics = {.method = audit_method(spec.numerics, spec.scene), .tolerance = tolerance}};
   request.scene.jumps = 1, request.scene.settle = 0;
   request.columns = fields_of(request.scene);
   return make_solver(request);
@@ -393,7 +397,7 @@ void Auditor::look_at(const AuditSample& sample, AuditReport& report) const {
   Verdict verdict = verdict_of(second_, design, ours, by_proof ? proved_ : spec_.output);
   std::optional<Verdict> ruling;
   // Where an integration convicts exact, the referee is asked for its opinion.
-  const bool second_opinion = verdict.convicts() && resolved_method(spec_.numerics) == "exact";
+  const bool second_opinion = verdict.convicts() && resolved_method(spec_) == "exact";
   if (mixed(number) % referee_every_ == 0 || second_opinion)
     ruling = verdict_of(referee_, design, ours, spec_.output);
   const bool acquitted = ruling && !ruling->undecided && !ruling->convicts();

@@ -55,10 +55,10 @@ struct AuditDifference {
 };
 
 /// The method that audits another: exact audits integration, integration by gsl-rk8pd at 1e-13 audits exact.
-std::string audit_method(const Numerics& numerics);
+std::string audit_method(const Numerics& numerics, const Scene& scene);
 
 /// What the spec's audit compares with: that method, or "proof".
-std::string auditor_of(const Numerics& numerics);
+std::string auditor_of(const Numerics& numerics, const Scene& scene);
 
 /// A report on no design yet.
 AuditReport begin_audit(const Spec& spec);

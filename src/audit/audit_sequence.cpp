@@ -34,7 +34,7 @@ SequenceAuditor::SequenceAuditor(const Spec& spec, double allowed)
 AuditSolver SequenceAuditor::second(std::size_t jumps) const {
   Scene scene = scene_;
   scene.jumps = static_cast<long>(jumps);
-  const std::string method = audit_method(spec_.numerics);
+  const std::string method = audit_method(spec_.numerics, spec_.scene);
   return {solver_of(scene, method, audit_tolerance), solver_of(scene, method, coarser_tolerance)};
 }
 

@@ -69,14 +69,15 @@ CliffKind kind_of(const Scene& scene, const Design& below, const Probe& from, co
         return is_near(o.jump_height, scene.hop_height) || is_near(o.first_jump_height, scene.hop_height);
       }))
     return CliffKind::threshold;
-  const bool slips = model_of(scene).slips;
-  if (!slips && (touches(below, a) || touches(above, b))) return CliffKind::fold;
+  const bool slips = model_of(scene).slips, is_hoop = scene.model == Mechanism::hoop;
+  if (!slips && is_hoop && (touches(below, a) || touches(above, b))) return CliffKind::fold;
   if (one_has([&](const Outcome& o) {
         return is_near(std::abs(o.jump_distance), 2.0 * std::numbers::pi * scene.runway);
       }))
     return CliffKind::runway;
   if (a.status != b.status && either(Status::stalled)) return CliffKind::turn;
   if (slips) return CliffKind::phase;
+  if (!is_hoop) return CliffKind::fold;
   if (a.jump_spin * b.jump_spin < 0.0) return CliffKind::turn;
   return ends_the_runway(scene, below) ? CliffKind::runway : CliffKind::fold;
 }

@@ -55,7 +55,7 @@ void print_held(const ModelFit& fit) {
   std::vector<std::string> held;
   for (const Parameter& parameter : parameters()) {
     const auto* member = std::get_if<double Design::*>(&parameter.member);
-    if (!member || !has(fit.scene.friction, parameter.only_of) || std::isnan(fit.design.**member) ||
+    if (!member || !has(fit.scene, parameter.only_of) || std::isnan(fit.design.**member) ||
         std::ranges::find(fit.parameters, parameter.name, &FittedParameter::name) != fit.parameters.end())
       continue;
     const bool angle = parameter.unit == "rad";

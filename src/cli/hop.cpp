@@ -64,6 +64,9 @@ std::string verdict(const Motion& motion, const Spec& spec) {
       return fmt::format("No jump within {} revolutions{}.", scene.runway,
                          eccentricity < rounding ? ": its centre of mass is on the axis" : "");
     case Status::stalled:
+      if (scene.model == Mechanism::pendulum)
+        return fmt::format("It neither jumps nor comes to the runway's end within patience = {} sqrt(R/g).",
+                           scene.patience);
       return resists ? "It is at rest: slope and motor push less than its resisting torque."
                      : "It is trapped: it rocks between two turning points indefinitely, or rests in an "
                        "equilibrium.";
@@ -86,7 +89,7 @@ std::string verdict(const Motion& motion, const Spec& spec) {
 /// How well the method that audits this one agrees.
 std::string check_line(const Spec& spec, const Motion& motion, const Outcome& b) {
   const Outcome& a = motion.outcome;
-  const std::string by = audit_method(spec.numerics) + " at 1e-12";
+  const std::string by = audit_method(spec.numerics, spec.scene) + " at 1e-12";
   if (b.status == Status::failed) return fmt::format("Check: {} failed on this design.", by);
   if (!same_flags(a, b))
     return fmt::format("Check: {} DISAGREES: {}, {} lift-offs.", by, name_of(b.status), b.candidates);
@@ -100,7 +103,7 @@ std::string check_line(const Spec& spec, const Motion& motion, const Outcome& b)
   return fmt::format("Check: {} {} {:.1e} diameters, time {} {:.1e}.{}{}", by,
                      disagrees ? "DISAGREES: height off by" : "agrees, height within",
                      std::abs(a.jump_height - b.jump_height), disagrees ? "by" : "within",
-                     std::abs(a.jump_time / b.jump_time - 1.0),
+                     b.jump_time == 0.0 ? std::abs(a.jump_time) : std::abs(a.jump_time / b.jump_time - 1.0),
                      report.first_overruled ? " The reference solver DISAGREES."
                      : report.referee_undecided
                          ? ""
@@ -158,6 +161,7 @@ void print_table(const Spec& spec, const Motion& motion, const Outcome& checked,
                  const std::optional<Motor>& motor) {
   ShownUnits units("", scales_of(spec.scene));
   const double second = time_unit(spec.scene);
+  const int width = spec.scene.model == Mechanism::hoop ? 15 : 16;  // of the longest name
   for (const Option* parameter : design_parameters(spec)) {
     double value = effective_value(*parameter, spec.design);
     if (parameter->key == "resisting_torque" && value == 0.0) continue;  // few hoops have one
@@ -165,20 +169,22 @@ void print_table(const Spec& spec, const Motion& motion, const Outcome& checked,
     if (is_set) value = spec.design.mu_kinetic;
     const bool is_torque = parameter->key.ends_with("_torque") && value != 0.0;
     const std::string torque = is_torque ? units.beside(value, parameter->key) : "";
-    say("{:<15} {:<12.8g} {}\n", parameter->key, value,
+    say("{:<{}} {:<12.8g} {}\n", parameter->key, width, value,
         is_set                     ? std::string("set to mu_kinetic, which is larger")
         : parameter->unit == "rad" ? fmt::format("rad = {:.6g} deg", in_degrees(value))
         : parameter->unit == "1"   ? std::string()
                                    : std::string(parameter->unit) + torque);
   }
-  say("{:<15} {:<12.8g} m, gravity {:g} m/s^2, sqrt(R/g) = {:.6g} s\n", "radius", spec.scene.radius,
+  if (spec.scene.model == Mechanism::pendulum)
+    say("{:<{}} {}\n", "motor_law", width, name_of(spec.scene.motor_law));
+  say("{:<{}} {:<12.8g} m, gravity {:g} m/s^2, sqrt(R/g) = {:.6g} s\n", "radius", width, spec.scene.radius,
       spec.scene.gravity, second);
   if (spec.hoop) {
     const ReducedBody body = reduce_body(*spec.hoop);
-    say("{:<15} {:<12.8g} kg in all, centre of mass at {:.6g} R, moment of inertia {:.6g} M R^2\n", "hoop",
-        body.total_mass, body.eccentricity, body.inertia);
+    say("{:<{}} {:<12.8g} kg in all, centre of mass at {:.6g} R, moment of inertia {:.6g} M R^2\n", "hoop",
+        width, body.total_mass, body.eccentricity, body.inertia);
   }
-  say("{:<15} {}, tolerance {:g}\n\n", "method", resolved_method(spec.numerics), spec.numerics.tolerance);
+  say("{:<{}} {}, tolerance {:g}\n\n", "method", width, resolved_method(spec), spec.numerics.tolerance);
 
   say("{:<22} {:>12} {:>12} {:>14} {:>12} {:>12}\n", "phase", "time [s]", "angle [deg]", "spin [rad/s]",
       "height [2R]", "landing [s]");
@@ -217,10 +223,12 @@ Json json_of(const Spec& spec, const Motion& motion, const Outcome& checked) {
               {"gravity", scene.gravity},
               {"mass", scene.mass > 0.0 ? Json(scene.mass) : Json()},
               {"rest_speed", scene.rest_speed}}},
-            {"method", resolved_method(spec.numerics)},
+            {"method", resolved_method(spec)},
             {"tolerance", spec.numerics.tolerance}};
   for (const Field* field : fields_of(scene))
     json[std::string(field->name)] = json_of(*field, motion.outcome);
+  if (scene.model != Mechanism::hoop)
+    json["scene"].update({{"model", name_of(scene.model)}, {"motor_law", name_of(scene.motor_law)}});
   Json lift_offs = Json::array(), grazes = Json::array(), phases = Json::array();
   for (const Candidate& flown : motion.candidates)
     lift_offs.push_back({{"time", flown.t},
@@ -246,9 +254,12 @@ Json json_of(const Spec& spec, const Motion& motion, const Outcome& checked) {
                       {"x", at.x / scene.radius}});
   json["lift_offs"] = std::move(lift_offs);
   json["grazes"] = std::move(grazes);
-  json["check"] = {{"method", audit_method(spec.numerics)}, {"tolerance", check_tolerance},
-                   {"status", name_of(checked.status)},     {"candidates", checked.candidates},
-                   {"jump_height", checked.jump_height},    {"jump_time", checked.jump_time}};
+  json["check"] = {{"method", audit_method(spec.numerics, spec.scene)},
+                   {"tolerance", check_tolerance},
+                   {"status", name_of(checked.status)},
+                   {"candidates", checked.candidates},
+                   {"jump_height", checked.jump_height},
+                   {"jump_time", checked.jump_time}};
   json["phases"] = std::move(phases);
   return json;
 }
@@ -317,10 +328,11 @@ int run(const HopArguments& arguments) {
   if (!arguments.trace.empty() && !(interval > 0.0))
     throw InputError("--trace-interval: is not a number of seconds; allowed: a number above 0");
   Motion motion = tell(spec.design, request_of_everything(spec), interval);
-  const Request second{.scene = spec.scene,  // phases and lift-offs alone
-                       .numerics = {.method = audit_method(spec.numerics), .tolerance = check_tolerance}};
+  const Request second{
+      .scene = spec.scene,  // phases and lift-offs alone
+      .numerics = {.method = audit_method(spec.numerics, spec.scene), .tolerance = check_tolerance}};
   const Motion check = tell(spec.design, second, 0.0);
-  if (resolved_method(spec.numerics) == "exact") motion.grazes = check.grazes;
+  if (resolved_method(spec) == "exact") motion.grazes = check.grazes;
   if (!arguments.trace.empty()) {
     std::vector<hdf5::Attribute> attributes = provenance(spec, trace_filetype, "Motion of one passive hoop");
     attributes.emplace_back("status", std::string(name_of(motion.outcome.status)));

@@ -78,6 +78,12 @@ void print_jump(const Spec& spec, const Outcome& jump) {
     if (std::isfinite(jump.max_normal_force))
       say("The plane pushes with at most {} until lift-off.\n",
           with_mass(jump.max_normal_force, 4, "(m + m_p) g", "N", spec.scene));
+    if (std::isfinite(jump.motor_max_torque))
+      say("The motor gives at most {} and {} at up to {:.4g} sqrt(g/R), and {} in all; efficiency {}.\n",
+          with_mass(jump.motor_max_torque, 4, "(m + m_p) g R", "N m", spec.scene),
+          with_mass(jump.motor_max_power + 0.0, 4, "(m + m_p) g sqrt(g R)", "W", spec.scene),
+          jump.motor_max_spin, with_mass(jump.motor_energy, 4, "(m + m_p) g R", "J", spec.scene),
+          std::isfinite(jump.efficiency) ? fmt::format("{:.3g}", jump.efficiency) : "none, for want of work");
     if (spec.scene.clear_height > 0.0)
       print_wall(spec.scene, jump, spec.scene.jumps > 1 ? "The first jump" : "It");
     if (std::isfinite(jump.energy_lost)) {

@@ -136,7 +136,7 @@ void print_place(const Spec& original, const std::string& at, const std::string&
   units.refuse_unusable(one.scene, axes);
   print_outcome(outcome, one.scene, units);
   if (!original.scatter.spreads.empty()) print_made(one, scales, units);
-  if (resolved_method(one.numerics) == "exact") print_gradient(one);
+  if (resolved_method(one) == "exact") print_gradient(one);
 
   say("\nNearest discontinuities within the map (a band narrower than a thousandth of an axis may be "
       "missed)\n");

@@ -59,7 +59,7 @@ int tell_report(const SweepArguments& arguments, const Spec& spec, const std::st
   } else if (!report.was_whole && !arguments.quiet) {
     say("solved   {} designs in {}, {:.4g} designs/s on {} threads by {}\n", grouped(report.solved),
         spoken_duration(report.seconds), static_cast<double>(report.solved) / report.seconds,
-        thread_count(arguments.threads), resolved_method(spec.numerics));
+        thread_count(arguments.threads), resolved_method(spec));
   }
   const int status = report.audit ? tell_audit(arguments, spec, *report.audit) : 0;
   if (arguments.quiet || report.was_whole) return status;

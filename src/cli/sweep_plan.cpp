@@ -144,10 +144,10 @@ void print_plan(const SweepArguments& arguments, const Spec& spec, const std::st
   if (!spec.scatter.spreads.empty())
     say("samples  {} manufactured hoops per design\n",
         grouped(static_cast<std::uint64_t>(spec.scatter.samples)));
-  say("method   {}, tolerance {:g}\n", resolved_method(spec.numerics), spec.numerics.tolerance);
+  say("method   {}, tolerance {:g}\n", resolved_method(spec), spec.numerics.tolerance);
   std::vector<std::string_view> fields;
   for (const Field* field : layout.fields) fields.push_back(field->name);
-  say("check    {:g} of them, by {}\n", spec.numerics.audit, auditor_of(spec.numerics));
+  say("check    {:g} of them, by {}\n", spec.numerics.audit, auditor_of(spec.numerics, spec.scene));
   say("fields   {} in {}\n", fmt::join(fields, ", "), spec.output.precision);
   say("memory   {}\n", memory_line(spec, layout, tiling, threads));
   say("file     about {}{}\n", spoken_bytes(map_file_bytes(layout, tiling)),

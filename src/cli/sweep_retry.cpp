@@ -28,7 +28,7 @@ int retry_sweep(const SweepArguments& arguments, const Spec& spec, const std::st
     throw InputError(
         fmt::format("{}: holds other designs: {}; allowed: its own spec (leapmap info --spec {})", map,
                     *difference, shell_quoted(map)));
-  there.numerics = retry_numerics(there.numerics, spec.numerics);
+  there.numerics = retry_numerics(there.numerics, spec.numerics, there.scene);
   note_signals();
   const auto report =
       retry_with(map, there, arguments.threads, arguments.locking, [] { return noted_signal() != 0; });
@@ -39,7 +39,7 @@ int retry_sweep(const SweepArguments& arguments, const Spec& spec, const std::st
   if (!report->durable) tell_of_folder(map);
   if (arguments.quiet) return 0;
   say("retried  {} failed designs by {} at tolerance {:g}: {} solved, {} failed again\n",
-      grouped(report->retried), resolved_method(there.numerics), there.numerics.tolerance,
+      grouped(report->retried), resolved_method(there), there.numerics.tolerance,
       grouped(report->retried - report->still_failed), grouped(report->still_failed));
   print_totals(report->statuses);
   if (report->retried > 0 && !there.scatter.spreads.empty())

@@ -128,7 +128,7 @@ void descend(Judge& judge, Place& place) {
   };
   const bool smooth = (!field || can_be_differentiated(*field, scene)) && !judge.makes_hoops() &&
                       std::ranges::all_of(question.one.goals, has_slope);
-  if (!smooth || !place.verdict.feasible() || resolved_method(question.one.numerics) != "exact") return;
+  if (!smooth || !place.verdict.feasible() || resolved_method(question.one) != "exact") return;
   Slope slope(judge);
   slope.best = place;
   nlopt::opt slsqp(nlopt::LD_SLSQP, static_cast<unsigned>(judge.dimensions()));

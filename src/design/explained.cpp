@@ -35,7 +35,7 @@ Spec spec_of_model(Spec spec, Friction friction) {
   spec.scene.friction = friction;
   spec.axes.clear(), spec.output = {};
   for (const Parameter& parameter : parameters()) {
-    if (has(friction, parameter.only_of)) continue;
+    if (has(spec.scene, parameter.only_of)) continue;
     if (const auto* of_design = std::get_if<double Design::*>(&parameter.member))
       spec.design.** of_design = usual.**of_design;
     else
@@ -68,8 +68,13 @@ Side usual_bounds(const Variable& variable, double value) {
 Explained::Explained(const Measurements& measured, const Spec& spec, Friction friction,
                      std::span<const std::string> free)
     : measured_(measured), spec_(spec_of_model(spec, friction)), film_(measured.film, spec_.scene) {
+  if (is_film() && spec.scene.model != Mechanism::hoop)
+    throw InputError(
+        fmt::format("{}: is a film, which is compared with the motion of hoops only; allowed: "
+                    "events, or model = \"hoop\"",
+                    measured.origin));
   for (const FreeParameter& parameter : free_parameters(spec))
-    if (has(friction, parameter.variable.only_of)) free_.push_back(parameter);
+    if (has(spec_.scene, parameter.variable.only_of)) free_.push_back(parameter);
   if (spec.axes.empty() && free.empty()) free_by_default();
   free_by_name(free);
   // An angle counted from a zero of its own is not known at the release either.
@@ -124,7 +129,9 @@ Explained::Explained(const Measurements& measured, const Spec& spec, Friction fr
 void Explained::free_by_default() {
   const bool slips = model_of(spec_.scene).slips;
   const Film& film = measured_.film;
-  if (!is_film()) {
+  if (spec_.scene.model == Mechanism::pendulum) {
+    free_ = {free_parameter("pendulum_angle", -pi, pi), free_parameter("pendulum_spin", -1.0, 1.0)};
+  } else if (!is_film()) {
     free_ = {free_parameter("release_angle", 0.5 * pi, 1.95 * pi), free_parameter("release_spin", -1.0, 3.0)};
   } else if (is_free(film, "time_offset")) {
     free_ = {release_angle_of_film()};
@@ -172,7 +179,7 @@ void Explained::free_by_name(std::span<const std::string> names) {
     const std::optional<Variable> variable = find_variable(name, spec_.hoop ? &*spec_.hoop : nullptr);
     if (!variable) refuse_free_name(name);
     const bool there = std::ranges::find(free_, name, &FreeParameter::name) != free_.end();
-    if (there || variable->of_body() || !has(spec_.scene.friction, variable->only_of)) continue;
+    if (there || variable->of_body() || !has(spec_.scene, variable->only_of)) continue;
     if (name == "release_angle" && is_film())
       free_.push_back(release_angle_of_film());
     else if (name == "release_angle")
@@ -306,8 +313,31 @@ auto Explained::with_event_solver(bool derivatives, const F& f) const {
   return event_solvers_[derivatives ? 1 : 0].with(make, f);
 }
 
+/// Of a model without derivatives: by central differences, good to the square of the step, as the integration
+/// is to a thousandth of that.
+bool Explained::event_differences(std::span<const double> at, std::span<double> residuals,
+                                  std::span<double> jacobian) const {
+  if (!event_residuals(at, residuals, {})) return false;
+  std::vector<double> moved(at.begin(), at.end()), below(residuals.size()), above(residuals.size());
+  for (std::size_t k = 0; k < free_.size(); ++k) {
+    const double h = 1e-5 * std::max(1.0, std::abs(at[k]));
+    const double low = std::max(at[k] - h, problem_.bounds[k].low),
+                 high = std::min(at[k] + h, problem_.bounds[k].high);
+    moved[k] = low;
+    const bool has_low = event_residuals(moved, below, {});
+    moved[k] = high;
+    if (!has_low || !event_residuals(moved, above, {})) return false;
+    moved[k] = at[k];
+    for (std::size_t i = 0; i < residuals.size(); ++i)
+      jacobian[i * free_.size() + k] = (above[i] - below[i]) / (high - low);
+  }
+  return true;
+}
+
 bool Explained::event_residuals(std::span<const double> at, std::span<double> residuals,
                                 std::span<double> jacobian) const {
+  if (!jacobian.empty() && !model_of(spec_.scene).gradients)
+    return event_differences(at, residuals, jacobian);
   const Design design = design_at(at);
   return with_event_solver(!jacobian.empty(), [&](EventSolver& solver) {
     Outcome outcome;

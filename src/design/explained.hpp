@@ -63,6 +63,8 @@ class Explained {
  private:
   bool film_residuals(std::span<const double> at, std::span<const std::size_t> numbers,
                       std::span<double> residuals, std::span<double> jacobian) const;
+  bool event_differences(std::span<const double> at, std::span<double> residuals,
+                         std::span<double> jacobian) const;
   bool event_residuals(std::span<const double> at, std::span<double> residuals,
                        std::span<double> jacobian) const;
   /// A solver of the events' fields, with derivatives by the free parameters or without. f(EventSolver&).

@@ -51,6 +51,8 @@ Effort effort_of(const Judge& judge, const FindOptions& options) {
   const Question& question = judge.question();
   const bool slips = model_of(question.one.scene).slips;
   Effort effort{slips ? std::size_t{1} << 18 : std::size_t{1} << 21, 64, 16, 2048, 2048};
+  // A model that is integrated takes a hundred times as long for a design.
+  if (!model_of(question.one.scene).exact) effort = {std::size_t{1} << 14, 16, 8, 512, 512};
   // What is asked of the way takes ten times as long as the jump alone.
   if (std::ranges::any_of(quantities_of(question), &Field::of_way))
     effort.sample /= 16, effort.starts = 16, effort.improved = 8;
@@ -273,7 +275,7 @@ void tell(const Judge& judge, const std::vector<Place>& places, const FindOption
           FoundDesigns& found) {
   const Question& question = judge.question();
   const bool front = question.objectives.size() == 2,
-             differentiable_method = resolved_method(question.one.numerics) == "exact";
+             differentiable_method = resolved_method(question.one) == "exact";
   const std::vector<GoalCheck> goals = goal_checks(question.one.goals);
   const Spec grid = question.grid();
   Request all = request_of_outcomes(question.one);

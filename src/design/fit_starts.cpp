@@ -8,6 +8,7 @@
 #include "design/fit_errors.hpp"
 #include "engine/parallel.hpp"
 #include "leapmap/errors.hpp"
+#include "model/model.hpp"
 #include "numerics/sobol_points.hpp"
 
 namespace leapmap {
@@ -70,7 +71,8 @@ std::vector<std::vector<double>> coarse_starts(const Explained& explained, const
   const auto usual = [&](std::size_t asked, std::size_t of_film, std::size_t of_events) {
     return asked > 0 ? asked : film ? of_film : of_events;
   };
-  const std::size_t samples = SobolPoints::whole(usual(options.coarse, 2048, 1 << 16)),
+  const std::size_t samples = SobolPoints::whole(
+                        usual(options.coarse, 2048, model_of(explained.scene()).exact ? 1 << 16 : 1 << 12)),
                     most = usual(options.starts, 8, 24);
   const std::size_t dimensions = explained.searched();
   if (dimensions == 0) return {{}};

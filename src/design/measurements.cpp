@@ -85,7 +85,7 @@ void check_event(const Measurements& measured, std::size_t row, const Spec& spec
     throw InputError(
         fmt::format("{}: error = {} of {}; allowed: a standard error above 0", place, error, name));
   Scene scene = spec.scene;
-  scene.friction = field->only_of.value_or(scene.friction);  // whichever models are fitted
+  scene.friction = field->only_of.friction.value_or(scene.friction);  // whichever models are fitted
   if (!has(scene, *field))
     throw InputError(
         fmt::format("{}: {} describes later jumps or gaits; allowed: with "

@@ -30,8 +30,9 @@ Objective objective_of(const Spec& spec, const std::vector<FreeParameter>& free,
   if (!field)
     refuse(spec, fmt::format("{}: {} is fixed", key, name),
            fmt::format("a field, or one of the free parameters, design.{} = {{ from, to }}", name));
-  if (!has(spec.scene.friction, field->only_of))
-    refuse(spec, fmt::format("{}: {} {}", key, name, no_use(spec.scene)), with_model(*field->only_of));
+  if (!has(spec.scene, field->only_of))
+    refuse(spec, fmt::format("{}: {} {}", key, name, no_use(spec.scene, field->only_of)),
+           with_model(field->only_of));
   if (field->of_wall && !has(spec.scene, *field))
     refuse(spec, fmt::format("{}: {} has no effect without a wall", key, name),
            "with scene.clear_height, for example \"40 mm\"");

@@ -51,8 +51,11 @@ double map_file_bytes(const MapLayout& layout, const Tiling& tiling) {
 std::string title_of(const Spec& spec) {
   std::vector<std::string_view> names;
   for (const Axis& axis : spec.axes) names.push_back(axis.key);
-  return spec.axes.empty() ? fmt::format("Jumps of {} hoop designs", spec.list.count)
-                           : fmt::format("Jumps of passive hoops over {}", fmt::join(names, " x "));
+  const bool driven = spec.scene.model == Mechanism::pendulum;
+  return spec.axes.empty()
+             ? fmt::format("Jumps of {} {} designs", spec.list.count, driven ? "pendulum" : "hoop")
+             : fmt::format("Jumps of {} over {}", driven ? "hoops with a driven pendulum" : "passive hoops",
+                           fmt::join(names, " x "));
 }
 
 }  // namespace leapmap

@@ -53,7 +53,7 @@ std::vector<hdf5::Attribute> provenance(const Spec& spec, std::string_view filet
                                         const std::string& title) {
   std::vector<hdf5::Attribute> attributes = file_provenance(filetype, title);
   attributes.emplace_back("spec", resolved_text(spec));
-  attributes.emplace_back("method", resolved_method(spec.numerics));
+  attributes.emplace_back("method", resolved_method(spec));
   attributes.emplace_back("tolerance", spec.numerics.tolerance);
   return attributes;
 }

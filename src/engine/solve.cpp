@@ -20,9 +20,7 @@ namespace leapmap {
 namespace {
 
 /// Few of a stepper, which may take a second for one: whoever asks for a stop waits for a block.
-std::size_t designs_a_block(const Spec& spec) {
-  return resolved_method(spec.numerics) == "exact" ? 2048 : 16;
-}
+std::size_t designs_a_block(const Spec& spec) { return resolved_method(spec) == "exact" ? 2048 : 16; }
 
 /// The spec of one call: what its method and tolerance come to, checked.
 template <class Options>

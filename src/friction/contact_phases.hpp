@@ -59,6 +59,13 @@ enum class PhaseEnd {
   failed
 };
 
+/// Whether a contact with n0 <= 0, which would leave the plane were it not held, does.
+enum class Leaving {
+  unless_it_sticks,  ///< rolling on is consistent there too, and what rolls goes on rolling
+  always,
+  never
+};
+
 /// What a design's friction and landing look like, its defaults settled. Static friction is never below
 /// kinetic: between the two neither sticking nor sliding would be consistent.
 template <class S>

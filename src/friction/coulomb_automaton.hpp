@@ -23,13 +23,6 @@ namespace leapmap {
 /// What a contact with v = 0 or v != 0 goes on as.
 enum class ContactPhase { rolls, slides_forwards, slides_backwards, leaves };
 
-/// Whether a contact with n0 <= 0, which would leave the plane were it not held, does.
-enum class Leaving {
-  unless_it_sticks,  ///< rolling on is consistent there too, and what rolls goes on rolling
-  always,
-  never
-};
-
 /// At v != 0 it slides; at v = 0 the forces of rolling decide.
 template <class S>
 ContactPhase contact_phase(const Hoop<S>& hoop, const Contact<S>& contact, const ContactState<S>& at,

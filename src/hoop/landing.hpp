@@ -52,52 +52,67 @@ Landing<T> hold(const Hoop<T>& hoop, const Trig<T>& phi, const ContactVelocity<T
           true};
 }
 
-/// The contact velocities answer impulses by W: slip += Wtt Pt + Wtn Pn, normal += Wtn Pt + Wnn Pn. The
-/// impulses go Routh's path: while the normal impulse grows, friction opposes slip with mu times it, until
-/// slip is used up; then it holds the contact if |Wtn / Wtt| <= mu, else slip goes on towards sign(Wtn).
+/// How the contact's velocities answer impulses: slip += tt Pt + tn Pn, normal += tn Pt + nn Pn.
+template <class S>
+struct ContactResponse {
+  S tt, tn, nn;
+};
+
+/// Where Routh's path ends.
+template <class S>
+struct RouthEnd {
+  S slip, normal;  ///< velocities of the contact
+  LandingImpulse<S> impulse;
+  bool sticks;
+};
+
+/// Impulses go Routh's path: while the normal impulse grows, friction opposes slip with mu times it, until
+/// slip is used up; then it holds the contact if |tn / tt| <= mu, else slip goes on towards sign(tn).
 /// Compression ends where the normal velocity is zero; restitution adds its share of the normal impulse until
 /// there. It always ends: where sliding alone would not end compression, it ends itself. Of a rebound slower
 /// than rest_speed the normal velocity counts as none.
 template <class S>
-Landing<S> land(const Hoop<S>& hoop, const Trig<S>& phi, const ContactVelocity<S>& before, const S& mu,
-                const S& restitution, const S& rest_speed) {
+RouthEnd<S> routh_path(const ContactResponse<S>& W, const S& slip, const S& normal, const S& mu,
+                       const S& restitution, const S& rest_speed) {
   using std::abs;
-  const S arm = height_of_mass(hoop, phi), lever = hoop.rho * phi.sin;
-  const S Wtt = S(1) + arm * arm / hoop.Ic, Wtn = arm * lever / hoop.Ic, Wnn = S(1) + lever * lever / hoop.Ic;
   const auto sign = [](const S& x) { return x > S(0) ? S(1) : S(-1); };
-
   // The path in pieces: on each, friction's share of the normal impulse is constant.
-  struct Point {
-    S slip, normal, friction_impulse, normal_impulse;
-    bool sticks;
-  };
-  const bool holds = abs(Wtn) <= mu * Wtt;
-  const auto share_at = [&](const Point& at) {
-    if (at.sticks) return -Wtn / Wtt;
-    return -mu * sign(at.slip != S(0) ? at.slip : Wtn);
-  };
-  const auto advance = [&](Point& at, S to_impulse, bool to_compression) {
+  const bool holds = abs(W.tn) <= mu * W.tt;
+  RouthEnd<S> at{slip, normal, {S(0), S(0)}, slip == S(0) && holds};
+  const auto advance = [&](S to_impulse, bool to_compression) {
     for (int piece = 0; piece < 3; ++piece) {
-      const S share = share_at(at), slip_rate = Wtt * share + Wtn, normal_rate = Wtn * share + Wnn;
+      const S share = at.sticks ? -W.tn / W.tt : -mu * sign(at.slip != S(0) ? at.slip : W.tn);
+      const S slip_rate = W.tt * share + W.tn, normal_rate = W.tn * share + W.nn;
       S length = to_compression ? (normal_rate > S(0) ? -at.normal / normal_rate : S(HUGE_VAL))
-                                : to_impulse - at.normal_impulse;
+                                : to_impulse - at.impulse.normal;
       const S to_stick = at.sticks || at.slip * slip_rate >= S(0) ? S(HUGE_VAL) : -at.slip / slip_rate;
       const bool stops = to_stick <= length;
       length = stops ? to_stick : length;
-      at.normal_impulse += length, at.friction_impulse += share * length;
+      at.impulse.normal += length, at.impulse.friction += share * length;
       at.normal += normal_rate * length;
       at.slip = stops ? S(0) : at.slip + slip_rate * length;
       if (!stops) return;
       at.sticks = holds;
     }
   };
-  Point at{before.slip, before.normal, S(0), S(0), before.slip == S(0) && holds};
-  advance(at, S(0), true);
+  advance(S(0), true);
   at.normal = S(0);
-  advance(at, (S(1) + restitution) * at.normal_impulse, false);
+  advance((S(1) + restitution) * at.impulse.normal, false);
   if (!(at.normal >= rest_speed)) at.normal = S(0);
-  const S spin = before.spin - (arm * at.friction_impulse + lever * at.normal_impulse) / hoop.Ic;
-  return {{at.sticks ? S(0) : at.slip, at.normal, spin}, {at.friction_impulse, at.normal_impulse}, at.sticks};
+  if (at.sticks) at.slip = S(0);
+  return at;
+}
+
+/// A hoop's landing along that path.
+template <class S>
+Landing<S> land(const Hoop<S>& hoop, const Trig<S>& phi, const ContactVelocity<S>& before, const S& mu,
+                const S& restitution, const S& rest_speed) {
+  const S arm = height_of_mass(hoop, phi), lever = hoop.rho * phi.sin;
+  const ContactResponse<S> W{S(1) + arm * arm / hoop.Ic, arm * lever / hoop.Ic,
+                             S(1) + lever * lever / hoop.Ic};
+  const RouthEnd<S> end = routh_path(W, before.slip, before.normal, mu, restitution, rest_speed);
+  const S spin = before.spin - (arm * end.impulse.friction + lever * end.impulse.normal) / hoop.Ic;
+  return {{end.slip, end.normal, spin}, end.impulse, end.sticks};
 }
 
 }  // namespace leapmap

@@ -59,7 +59,7 @@ inline void to_si(std::vector<MotionPoint>& points, const Scene& scene) {
   const double second = time_unit(scene), metre = scene.radius;
   for (MotionPoint& point : points) {
     point.t *= second;
-    point.spin /= second;
+    point.spin /= second, point.pendulum_spin /= second;
     point.x *= metre;
     point.y *= metre;
   }

@@ -3,6 +3,7 @@
 /// The motion of one design: phases, lift-offs, samples over time. All in SI units.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "leapmap/outcome.hpp"
@@ -20,6 +21,10 @@ struct MotionPoint {
                         ///< have to hold the hoop down
   double friction;      ///< F of the paper's (12), over the weight, positive downhill
   Phase phase;          ///< contact phase
+  // Of a pendulum; NaN: there is none.
+  double pendulum_angle = std::numeric_limits<double>::quiet_NaN();  ///< psi [rad]
+  double pendulum_spin = std::numeric_limits<double>::quiet_NaN();   ///< psi' [rad/s]
+  double motor_torque = std::numeric_limits<double>::quiet_NaN();    ///< on it [(m + m_p) g R]
 };
 
 /// The beginning of a phase.

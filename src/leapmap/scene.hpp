@@ -13,8 +13,24 @@ enum class Friction {
   coulomb    ///< Coulomb friction: the hoop sticks, slides, lands and jumps again
 };
 
+/// What rolls.
+enum class Mechanism {
+  hoop,     ///< a hoop with masses fixed to it
+  pendulum  ///< a hoop with a pendulum on its axis, and a motor between them
+};
+
+/// What the motor between hoop and pendulum does, always within its torque at its speed.
+enum class MotorLaw {
+  constant,     ///< all the torque it gives
+  until_angle,  ///< the same until the pendulum has turned to motor_target; then it brakes, and holds
+  until_speed,  ///< the same until the pendulum has that speed relative to the hoop
+  speed,        ///< brings the pendulum to that speed relative to the hoop, and keeps it there
+  angle         ///< brings the pendulum to that angle, with motor_gain and motor_damping
+};
+
 /// Contact model, definition of a jump, size and gravity.
 struct Scene {
+  Mechanism model = Mechanism::hoop;       ///< what rolls
   Friction friction = Friction::sticking;  ///< contact model
   double runway = 5.0;  ///< rolling limit, at which the search for a jump ends [revolutions], in (0, 1e6]
   double hop_height =
@@ -23,6 +39,8 @@ struct Scene {
   bool clear_height_in_metres = false;  ///< then clear_height is in m, the same for hoops of every size
   long jumps = 1;                       ///< number of jumps to follow, in [1, 250]
   bool motor_in_flight = true;  ///< whether a motor drives the hoop in flight too; else it idles there
+  MotorLaw motor_law = MotorLaw::constant;  ///< pendulum only
+  double patience = 200.0;  ///< pendulum only: without a jump until then it is stalled [sqrt(R/g)], > 0
   // Gaits; the rolling limit then counts from each landing.
   long settle = 0;               ///< jumps to skip before a gait is searched for, in [0, 10^6]; 0: no search
   long most_period = 16;         ///< longest period of a gait [jumps], in [1, 64]

@@ -29,7 +29,7 @@ inline constexpr int format_major = 1;  ///< readers refuse a newer one
 /// chunk and of the file, the audit's state; 5: the referee; 6: labels of a list; 7: derivatives; 8: hoops as
 /// made; 9: later jumps; 10: their audit, and gaits'; 11: shards; 12: measures of jumps; 13: [hoop], motors
 /// in flight; 14: derivatives by numbers of [hoop]; 15: resisting torques;
-/// 16: parameters in the units of the nominal hoop; 17: proofs.
-inline constexpr int format_minor = 17;
+/// 16: parameters in the units of the nominal hoop; 17: proofs; 18: pendulums.
+inline constexpr int format_minor = 18;
 
 }  // namespace leapmap

@@ -2,6 +2,7 @@
 #include "map/trace_file.hpp"
 
 #include <array>
+#include <cmath>
 #include <numeric>
 
 #include "map/schema.hpp"
@@ -24,7 +25,7 @@ Table motion_table(const Motion& motion) {
   hdf5::Codes phases{{}, {1, 2, 3}, "rolling sliding flight"};
   for (const MotionPoint& point : motion.points)
     phases.values.push_back(static_cast<std::uint8_t>(point.phase));
-  return {
+  Table table{
       {"t", "s", "time since release", points(&MotionPoint::t)},
       {"phi", "rad", "angle; 0: mass on the plane", points(&MotionPoint::phi)},
       {"spin", "rad s-1", "spin, positive downhill", points(&MotionPoint::spin)},
@@ -33,6 +34,13 @@ Table motion_table(const Motion& motion) {
       {"normal_force", "1", "normal force over the weight", points(&MotionPoint::normal_force)},
       {"friction", "1", "friction force over the weight, positive downhill", points(&MotionPoint::friction)},
       {"phase", "1", "phase of the motion", phases}};
+  if (motion.points.empty() || std::isnan(motion.points.front().pendulum_angle)) return table;
+  table.push_back({"pendulum_angle", "rad", "angle of the pendulum; 0: it points at the plane",
+                   points(&MotionPoint::pendulum_angle)});
+  table.push_back({"pendulum_spin", "rad s-1", "spin of the pendulum", points(&MotionPoint::pendulum_spin)});
+  table.push_back({"motor_torque", "1", "torque of the motor on the pendulum, in (m + m_p) g R",
+                   points(&MotionPoint::motor_torque)});
+  return table;
 }
 
 /// Its lift-offs, by their number.

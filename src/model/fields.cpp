@@ -53,6 +53,13 @@ Field of_way(std::string_view name, double Outcome::*member, std::string_view me
   return field;
 }
 
+/// The same of a pendulum's motor only.
+Field of_robot(std::string_view name, double Outcome::*member, std::string_view meaning) {
+  Field field = of_way(name, member, meaning);
+  field.since = 18, field.only_of = Mechanism::pendulum;
+  return field;
+}
+
 const std::array fields{
     Field{"jump_height", Quantity{&Outcome::jump_height, Measure::height}, "1",
           "apex of the jump above the plane, in hoop diameters"},
@@ -130,41 +137,47 @@ const std::array fields{
            "largest power of the motor from release to the lift-off of the jump, in (m + m_p) g sqrt(g R); "
            "below zero: it only brakes"),
     of_way("motor_max_spin", &Outcome::motor_max_spin,
-           "largest spin from release to the lift-off of the jump, either way, in sqrt(g/R)"),
+           "largest spin from release to the lift-off of the jump, either way, in sqrt(g/R); of a pendulum "
+           "its spin relative to the hoop"),
+    of_robot("motor_max_torque", &Outcome::motor_max_torque,
+             "largest torque of the motor from release to the lift-off of the jump, either way, in (m + m_p) "
+             "g R"),
+    of_robot("efficiency", &Outcome::efficiency,
+             "weight times height of the jump over the work of the motor up to its lift-off"),
     Field{"jumps",
           Code{[](const Outcome& o) { return static_cast<std::uint8_t>(o.jumps()); },
                [](Outcome& o, std::uint8_t code) { o.later_jumps.resize(code > 1 ? code - 1u : 0u); },
                255,
                {}},
-          "1", "number of jumps, at most scene.jumps", 9, std::nullopt, true},
+          "1", "number of jumps, at most scene.jumps", 9, OnlyOf{}, true},
     Field{"sequence_end",
           Code{[](const Outcome& o) { return static_cast<std::uint8_t>(o.sequence_end); },
                [](Outcome& o, std::uint8_t code) {
                  o.sequence_end = code < status_count ? static_cast<Status>(code) : Status::not_computed;
                },
                0, status_names},
-          "1", "how the sequence of jumps ended; jumped: all scene.jumps were made", 9, std::nullopt, true},
+          "1", "how the sequence of jumps ended; jumped: all scene.jumps were made", 9, OnlyOf{}, true},
     Field{"sequence_condition", Quantity{&Outcome::sequence_condition}, "1",
           "growth factor, up to the last landing, of errors at the release and at every landing", 10,
-          std::nullopt, true, false, ByDefault::left_out},
+          OnlyOf{}, true, false, ByDefault::left_out},
     Field{"gait_period",
           Code{[](const Outcome& o) { return o.gait_period; },
                [](Outcome& o, std::uint8_t code) { o.gait_period = code; },
                255,
                {}},
-          "1", "period of the gait in jumps; 0: the jumps end; 255: no period found", 9, std::nullopt, false,
+          "1", "period of the gait in jumps; 0: the jumps end; 255: no period found", 9, OnlyOf{}, false,
           true},
     Field{"gait_multiplier", Quantity{&Outcome::gait_multiplier}, "1",
-          "Floquet multiplier: growth of a small deviation over one period of the gait", 9, std::nullopt,
-          false, true},
+          "Floquet multiplier: growth of a small deviation over one period of the gait", 9, OnlyOf{}, false,
+          true},
     Field{"gait_height", Quantity{&Outcome::gait_height, Measure::height}, "1",
-          "mean height of the gait's jumps, in hoop diameters", 9, std::nullopt, false, true},
+          "mean height of the gait's jumps, in hoop diameters", 9, OnlyOf{}, false, true},
     Field{"gait_speed", Quantity{&Outcome::gait_speed}, "m s-1", "mean speed of the gait down the plane", 9,
-          std::nullopt, false, true},
+          OnlyOf{}, false, true},
     Field{"gait_jump_time", Quantity{&Outcome::gait_jump_time, Measure::time}, "s",
-          "mean time from one jump of the gait to the next", 14, std::nullopt, false, true},
+          "mean time from one jump of the gait to the next", 14, OnlyOf{}, false, true},
     Field{"gait_energy_lost", Quantity{&Outcome::gait_energy_lost}, "1",
-          "energy lost per jump of the gait, in (m + m_p) g R", 9, std::nullopt, false, true},
+          "energy lost per jump of the gait, in (m + m_p) g R", 9, OnlyOf{}, false, true},
 };
 
 }  // namespace
@@ -188,7 +201,7 @@ bool has(const Scene& scene, const Field& field) {
   if (const auto* later = std::get_if<OfJump>(&field.source);
       later && later->number.jump > static_cast<std::size_t>(scene.jumps))
     return false;
-  return (!field.only_of || *field.only_of == scene.friction) && (!field.of_sequence || scene.jumps > 1) &&
+  return has(scene, field.only_of) && (!field.of_sequence || scene.jumps > 1) &&
          (!field.of_gait || scene.settle > 0) && (!field.of_wall || scene.clear_height > 0.0);
 }
 
@@ -264,9 +277,16 @@ std::optional<OutcomeNumber> number_of(const Field& field) {
   return std::nullopt;
 }
 
+namespace {
+
+/// Whether only the model has it that has no derivatives.
+bool is_of_pendulum(const OnlyOf& only_of) { return only_of.model == Mechanism::pendulum; }
+
+}  // namespace
+
 bool can_be_differentiated(const Field& field) {
   const bool has_derivatives = !field.of_sequence || !(field.of_wall || field.of_way);
-  return number_of(field) && !field.of_gait && has_derivatives &&
+  return number_of(field) && !field.of_gait && has_derivatives && !is_of_pendulum(field.only_of) &&
          (field.by_default != ByDefault::left_out || field.of_way);
 }
 
@@ -294,7 +314,7 @@ struct GradientTable {
     const OutcomeNumber of = *number_of(field);
     for (const Parameter& parameter : parameters()) {
       const auto* by = std::get_if<double Design::*>(&parameter.member);
-      if (!by) continue;
+      if (!by || is_of_pendulum(parameter.only_of)) continue;
       const bool own = parameter.unit != "rad" && parameter.unit != "1";
       const std::string name(field.name), parameter_name(parameter.name);
       const RowTexts& text = texts.emplace_back(
@@ -302,7 +322,7 @@ struct GradientTable {
                    "derivative of " + name + " by " + parameter_name +
                        (own ? ", which is in " + std::string(parameter.unit) : std::string())});
       rows.push_back(Field{text.name, Derivative{of, *by}, text.unit, text.long_name,
-                           std::max(7, field.since), parameter.only_of ? parameter.only_of : field.only_of,
+                           std::max(7, field.since), both(parameter.only_of, field.only_of),
                            field.of_sequence});
       rows.back().needs = field.needs, rows.back().of_wall = field.of_wall;
     }
@@ -387,7 +407,7 @@ struct ScatterTable {
       rows.push_back(Field{text.name,
                            OfMade{statistic, of ? std::get<Quantity>(of->source).member : nullptr, error},
                            text.unit, text.long_name, of ? std::max(8, of->since) : 8,
-                           of ? of->only_of : std::nullopt, of && of->of_sequence, of && of->of_gait});
+                           of ? of->only_of : OnlyOf{}, of && of->of_sequence, of && of->of_gait});
     };
     put(full, told, false);
     if (has_error) put(full + "_error", "standard error of " + full, true);
@@ -411,7 +431,7 @@ struct ScatterTable {
         {"worst_case", OfMade{Statistic::worst_case, &Outcome::jump_height, false}, "1",
          "least jump height of manufactured hoops and of the corners of uniform tolerances, in hoop "
          "diameters; 0: one does not jump",
-         17, Friction::sticking});
+         17, OnlyOf(Mechanism::hoop, Friction::sticking)});
   }
 };
 
@@ -428,7 +448,8 @@ std::span<const Field> proof_fields() {
                              std::string_view long_name) {
     Field field{name, column, unit, long_name, 17};
     if (column == ProofColumn::finding) field.source = Code{nullptr, nullptr, 0, findings};
-    field.only_of = Friction::sticking, field.by_default = ByDefault::left_out, field.of_proof = column;
+    field.only_of = {Mechanism::hoop, Friction::sticking}, field.by_default = ByDefault::left_out,
+    field.of_proof = column;
     return field;
   };
   static const std::array<Field, proof_columns> rows{

@@ -14,6 +14,7 @@
 #include "leapmap/design.hpp"
 #include "leapmap/outcome.hpp"
 #include "leapmap/scene.hpp"
+#include "model/parameters.hpp"
 #include "trajectory/solver.hpp"
 
 namespace leapmap {
@@ -86,10 +87,10 @@ struct Field {
   std::variant<Quantity, Code, Word, OfJump, Derivative, OfMade, ProofColumn> source;
   std::string_view unit;  ///< as UDUNITS reads it; "1": a pure number
   std::string_view long_name;
-  int since = 0;                      ///< the minor version of the map's format that brought it
-  std::optional<Friction> only_of{};  ///< the one model that fills it; unset: every model
-  bool of_sequence = false;           ///< of scenes with more jumps than one
-  bool of_gait = false;               ///< of scenes that look for gaits
+  int since = 0;             ///< the minor version of the map's format that brought it
+  OnlyOf only_of{};          ///< the scenes that fill it
+  bool of_sequence = false;  ///< of scenes with more jumps than one
+  bool of_gait = false;      ///< of scenes that look for gaits
   ByDefault by_default = ByDefault::stored;
   bool of_wall = false;                   ///< of scenes with a clear_height
   bool of_way = false;                    ///< of the way to a jump, for which the design is solved once more

@@ -8,9 +8,21 @@
 #include "integrate/contestant.hpp"
 #include "noslip/model.hpp"
 #include "numerics/lanes.hpp"
+#include "pendulum/model.hpp"
 
 namespace leapmap {
 namespace {
+
+/// The rows of a hoop with a pendulum.
+constexpr Model with_pendulum(Friction friction, std::string_view name, std::string_view meaning,
+                              bool slips) {
+  Model row{};
+  row.mechanism = Mechanism::pendulum, row.stepper = pendulum::usual_stepper;
+  row.friction = friction, row.name = name, row.meaning = meaning, row.slips = slips;
+  row.integration = pendulum::integration, row.tell_by_integration = pendulum::tell_by_integration;
+  row.ways = pendulum::ways;
+  return row;
+}
 
 // Made by the compiler: nothing of a set may run before it is chosen.
 constinit const std::array list{
@@ -24,7 +36,9 @@ constinit const std::array list{
     Model{Friction::coulomb, "coulomb", "slips, by Coulomb friction", true, friction::exact, friction::jumps,
           friction::gradients, friction::dual_jumps, friction::integration, friction::integrated_jumps,
           friction::refined, friction::tell_exactly, friction::tell_by_integration, friction::solving,
-          friction::effort, friction::ways}};
+          friction::effort, friction::ways},
+    with_pendulum(Friction::sticking, "sticking", "never slips", false),
+    with_pendulum(Friction::coulomb, "coulomb", "slips, by Coulomb friction", true)};
 
 constinit const Kernels of_this_set{list, static_cast<int>(batch_width)};
 

@@ -94,20 +94,23 @@ const Model* find_model(std::string_view name) {
 
 std::vector<std::string_view> model_names() {
   std::vector<std::string_view> names;
-  for (const Model& model : models()) names.push_back(model.name);
+  for (const Model& model : models())
+    if (model.mechanism == Mechanism::hoop) names.push_back(model.name);
   for (const Model& model : added()) names.push_back(model.name);
   return names;
 }
 
-const Model& model_of(Friction friction) {
+const Model& model_of(const Scene& scene) {
   for (const Model& model : models())
-    if (model.friction == friction) return model;
-  return *std::ranges::find(added(), friction, &Model::friction);
+    if (model.friction == scene.friction && model.mechanism == scene.model) return model;
+  return *std::ranges::find(added(), scene.friction, &Model::friction);
 }
 
 void refuse_lack(const Model& model, std::string_view what) {
-  throw InputError(fmt::format("scene.friction = \"{}\": this model has no {}; allowed: a model that has",
-                               model.name, what));
+  const bool is_hoop = model.mechanism == Mechanism::hoop;
+  throw InputError(fmt::format("scene.{} = \"{}\": this model has no {}; allowed: a model that has",
+                               is_hoop ? "friction" : "model",
+                               is_hoop ? model.name : name_of(model.mechanism), what));
 }
 
 std::string instruction_set() { return fmt::format("{}, {} lanes", in_use().name, kernels().lanes); }

@@ -3,6 +3,7 @@
 /// list; nothing else asks which model a scene names.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <span>
@@ -51,7 +52,18 @@ struct Model {
   DesignEffort (*effort)(const Scene&, bool derivatives);
   /// As `jumps`, and tells what the way to each jump asks of hoop and motor.
   JumpSolver<double> (*ways)(const Scene&, double tolerance);
+  Mechanism mechanism = Mechanism::hoop;  ///< in specs: the value of scene.model
+  std::string_view stepper{};             ///< with which method = "auto" integrates; empty: it is "exact"
 };
+
+/// The names of mechanisms and of laws in specs, in the order of their enumerations.
+inline constexpr std::array<std::string_view, 2> mechanism_names{"hoop", "pendulum"};
+inline constexpr std::array<std::string_view, 5> motor_law_names{"constant", "until_angle", "until_speed",
+                                                                 "speed", "angle"};
+constexpr std::string_view name_of(Mechanism model) {
+  return mechanism_names[static_cast<std::size_t>(model)];
+}
+constexpr std::string_view name_of(MotorLaw law) { return motor_law_names[static_cast<std::size_t>(law)]; }
 
 /// The built-in models.
 std::span<const Model> models();
@@ -64,8 +76,9 @@ void add_model(const Model& model);
 const Model* find_model(std::string_view name);
 std::vector<std::string_view> model_names();
 
-const Model& model_of(Friction friction);
-inline const Model& model_of(const Scene& scene) { return model_of(scene.friction); }
+const Model& model_of(const Scene& scene);
+/// Of a hoop.
+inline const Model& model_of(Friction friction) { return model_of(Scene{.friction = friction}); }
 
 /// Throws InputError: the model has no such thing, for example "derivatives".
 [[noreturn]] void refuse_lack(const Model& model, std::string_view what);
@@ -80,8 +93,5 @@ Capability need(const Model& model, Capability Model::*capability, std::string_v
 /// More steps than any integration needs that gets anywhere: a long run takes a million; a slide near
 /// Painleve's edge would take any number.
 inline long most_steps(const Scene& scene) { return model_of(scene).slips ? 100'000 : 1'000'000; }
-
-/// Whether a model has what only some have: a parameter or a field whose row names that model. Unset: all.
-inline bool has(Friction model, std::optional<Friction> only_of) { return !only_of || *only_of == model; }
 
 }  // namespace leapmap

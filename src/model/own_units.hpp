@@ -49,6 +49,7 @@ inline constexpr std::array own_units{
     OwnUnit{"revolutions", "m", [](const Scales& s) { return 2.0 * std::numbers::pi * s.radius; }, "m"},
     OwnUnit{"sqrt(R/g)", "s", own::time, "ms"},
     OwnUnit{"sqrt(g/R)", "rad s-1", [](const Scales& s) { return 1.0 / own::time(s); }, "rpm"},
+    OwnUnit{"rad or sqrt(g/R)", "rad", own::one, "deg"},  // of motor_target, by the motor's law
     OwnUnit{"sqrt(g R)", "m s-1", own::speed, "m/s"},
     OwnUnit{"(m + m_p) g R", "N m", own::energy, "N m"},
     OwnUnit{"(m + m_p) g sqrt(g R)", "W", [](const Scales& s) { return s.mass * s.gravity * own::speed(s); },

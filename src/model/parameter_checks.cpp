@@ -28,7 +28,7 @@ std::string shown(double value, std::string_view unit) {
 
 [[noreturn]] void refuse_unused(std::string_view place, const Parameter& parameter, double value,
                                 const Scene& scene) {
-  refuse(place, parameter, value, no_use(scene), with_model(*parameter.only_of));
+  refuse(place, parameter, value, no_use(scene, parameter.only_of), with_model(parameter.only_of));
 }
 
 [[noreturn]] void refuse_range(std::string_view place, const Parameter& parameter, double value) {
@@ -38,7 +38,7 @@ std::string shown(double value, std::string_view unit) {
 
 /// Whether a design may have that value in the scene, used or not.
 bool is_allowed(const Parameter& parameter, double value, double usual, const Scene& scene) {
-  if (!has(scene.friction, parameter.only_of)) return is_usual(value, usual);
+  if (!has(scene, parameter.only_of)) return is_usual(value, usual);
   return parameter.range.holds(value) || (std::isnan(value) && std::isnan(usual));
 }
 
@@ -49,6 +49,13 @@ const Parameter* first_refused(const Design& design, const Scene& scene) {
     if (const auto* member = std::get_if<double Design::*>(&parameter.member))
       if (!is_allowed(parameter, design.**member, usual.**member, scene)) return &parameter;
   return nullptr;
+}
+
+/// Whether its motor, if it is to bring the pendulum to an angle, has a finite gain: as stiffly as can be it
+/// would swing about it for ever.
+bool has_gain(const Design& design, const Scene& scene) {
+  return scene.model != Mechanism::pendulum || scene.motor_law != MotorLaw::angle ||
+         std::isfinite(design.motor_gain);
 }
 
 }  // namespace
@@ -65,14 +72,21 @@ std::string meant_degrees(const Range& range, std::string_view unit, double valu
   return fits ? fmt::format(" (did you mean {}deg?)", value) : "";
 }
 
-std::string no_use(const Scene& scene) {
+std::string no_use(const Scene& scene, const OnlyOf& only_of) {
+  if (only_of.model && *only_of.model != scene.model)
+    return fmt::format("has no effect because the model is {}", name_of(scene.model));
   return fmt::format("has no effect because the contact {}", model_of(scene).meaning);
 }
 
-std::string with_model(Friction model) {
-  const std::string_view name = model_of(model).name;
-  return fmt::format("with friction = \"{}\", on the command line --friction {} or --set friction={}", name,
-                     name, name);
+std::string with_model(const OnlyOf& only_of) {
+  std::vector<std::string> keys;
+  const auto add = [&](std::string_view key, std::string_view name) {
+    keys.push_back(fmt::format("with {} = \"{}\", on the command line --{} {} or --set {}={}", key, name, key,
+                               name, key, name));
+  };
+  if (only_of.model) add("model", name_of(*only_of.model));
+  if (only_of.friction) add("friction", model_of(*only_of.friction).name);
+  return fmt::format("{}", fmt::join(keys, ", and "));
 }
 
 bool is_usual(double value, double usual) {
@@ -85,8 +99,7 @@ void check_scene(const Scene& scene) {
     const auto* member = std::get_if<double Scene::*>(&parameter.member);
     if (!member) continue;
     const double value = scene.**member;
-    if (!has(scene.friction, parameter.only_of) && value != usual.**member)
-      refuse_unused({}, parameter, value, scene);
+    if (!has(scene, parameter.only_of) && value != usual.**member) refuse_unused({}, parameter, value, scene);
     if (!parameter.range.holds(value)) refuse_range({}, parameter, value);
   }
   if (scene.settle < 0 || scene.settle > 1'000'000)
@@ -103,13 +116,23 @@ void check_scene(const Scene& scene) {
                                  scene.jumps, most_jumps));
 }
 
-bool is_allowed(const Design& design, const Scene& scene) { return !first_refused(design, scene); }
+void check_gain(const Design& design, const Scene& scene, std::string_view place) {
+  if (has_gain(design, scene)) return;
+  throw InputError(
+      fmt::format("{}{}motor_gain = inf: motor_law = \"angle\" needs a gain; allowed: a finite number, for "
+                  "example 5",
+                  place, place.empty() ? "" : ": "));
+}
+
+bool is_allowed(const Design& design, const Scene& scene) {
+  return !first_refused(design, scene) && has_gain(design, scene);
+}
 
 void check_design(const Design& design, const Scene& scene, std::string_view place) {
   const Parameter* refused = first_refused(design, scene);
-  if (!refused) return;
+  if (!refused) return check_gain(design, scene, place);
   const double value = design.*std::get<double Design::*>(refused->member);
-  if (has(scene.friction, refused->only_of)) refuse_range(place, *refused, value);
+  if (has(scene, refused->only_of)) refuse_range(place, *refused, value);
   refuse_unused(place, *refused, value, scene);
 }
 

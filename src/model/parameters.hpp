@@ -18,10 +18,35 @@ namespace leapmap {
 struct Range {
   double least, most;
   bool least_allowed = true, most_allowed = true;
+  bool may_be_infinite = false;  ///< as its `most` is
 
   /// Whether a number is finite and inside.
   bool holds(double value) const;
 };
+
+/// What a scene must be to have something; what is unset may be anything.
+struct OnlyOf {
+  std::optional<Mechanism> model{};
+  std::optional<Friction> friction{};
+
+  constexpr OnlyOf() = default;
+  constexpr OnlyOf(Friction only) : friction(only) {}
+  constexpr OnlyOf(Mechanism only) : model(only) {}
+  constexpr OnlyOf(Mechanism only, Friction with) : model(only), friction(with) {}
+  bool holds_in(const Scene& scene) const {
+    return model.value_or(scene.model) == scene.model && friction.value_or(scene.friction) == scene.friction;
+  }
+};
+
+/// What both say of a scene, of which `first` holds where they differ.
+constexpr OnlyOf both(OnlyOf first, const OnlyOf& second) {
+  if (!first.model) first.model = second.model;
+  if (!first.friction) first.friction = second.friction;
+  return first;
+}
+
+/// Whether a scene has what only some have.
+inline bool has(const Scene& scene, const OnlyOf& only_of) { return only_of.holds_in(scene); }
 
 struct Parameter {
   std::string_view name;
@@ -30,8 +55,8 @@ struct Parameter {
   std::string_view unit;  ///< of model/own_units.hpp; "1": a pure number
   std::string_view meaning;
   Range range;
-  std::optional<Friction> only_of{};  ///< the one model that has it; unset: every model
-  bool of_contact = false;            ///< of the contact with the plane: stands in a spec's [scene]
+  OnlyOf only_of{};         ///< the scenes that have it
+  bool of_contact = false;  ///< of the contact with the plane: stands in a spec's [scene]
 };
 
 /// All of them, in the order of the documentation.
@@ -44,8 +69,8 @@ std::string allowed_values(const Range& range, std::string_view unit, std::strin
 std::string meant_degrees(const Range& range, std::string_view unit, double value);
 
 /// What is wrong with giving something that the scene's model has no effect for, and what is allowed instead.
-std::string no_use(const Scene& scene);
-std::string with_model(Friction model);
+std::string no_use(const Scene& scene, const OnlyOf& only_of);
+std::string with_model(const OnlyOf& only_of);
 
 /// Whether a value is what a parameter has unless it is given: `usual`. Of mu_kinetic that is NaN, which is
 /// mu_static's.
@@ -61,5 +86,8 @@ bool is_allowed(const Design& design, const Scene& scene);
 /// range or has no effect in the scene: mu_static, say, where the contact never slips. place: in front of the
 /// message.
 void check_design(const Design& design, const Scene& scene, std::string_view place = {});
+
+/// Throws InputError if the scene's motor_law is "angle" and the design's motor_gain is infinite.
+void check_gain(const Design& design, const Scene& scene, std::string_view place = {});
 
 }  // namespace leapmap

@@ -79,7 +79,7 @@ class Variable {
   std::string_view unit{};  ///< of model/own_units.hpp; "1": a pure number
   Range range{};
   std::size_t order = 0;  ///< of parameters and numbers of [hoop], whatever the order they are named in
-  std::optional<Friction> only_of{};
+  OnlyOf only_of{};
 
   bool of_body() const { return parameter_ == nullptr; }
   /// The member of a parameter; nullptr: it is of the body.

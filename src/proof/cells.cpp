@@ -144,10 +144,7 @@ CellProof prove_cell(const DesignBox& box, const Scene& scene, bool times) {
 }
 
 Cells::Cells(const Spec& spec) : spec_(spec), space_(spec) {
-  if (spec.scene.friction != Friction::sticking)
-    throw InputError(fmt::format(
-        "{}: friction = coulomb: nothing can be proved with friction; allowed: friction = sticking",
-        origin_of(spec)));
+  refuse_unprovable(spec.scene, origin_of(spec));
   for (const Axis& axis : spec.axes)
     if (axis.values.size() > 1 && find_body_number(axis.key))
       throw InputError(

@@ -48,8 +48,7 @@ Proof prove(const DesignBox& box, const Scene& scene, bool times) {
   if (box.from.size != box.to.size)
     throw InputError("a box of hoops of several sizes; allowed: one size, of which times depend");
   check_design(box.from, scene), check_design(box.to, scene);
-  if (scene.friction != Friction::sticking)
-    throw InputError("friction = coulomb: nothing can be proved with friction; allowed: friction = sticking");
+  refuse_unprovable(scene);
   std::vector<double Design::*> varying;
   for (const auto member : acting)
     if (box.from.*member != box.to.*member) varying.push_back(member);

@@ -13,6 +13,7 @@
 #include "leapmap/errors.hpp"
 #include "leapmap/solve.hpp"
 #include "model/fields.hpp"
+#include "proof/acting.hpp"
 #include "proof/cells.hpp"
 #include "spec/options.hpp"
 #include "tolerance/made_hoops.hpp"
@@ -106,10 +107,7 @@ DesignBox box_of(const Spec& spec, std::vector<double Design::*>& varying) {
 }  // namespace
 
 void check_worst_case(const Spec& spec) {
-  if (spec.scene.friction != Friction::sticking)
-    throw InputError(fmt::format(
-        "{}: friction = coulomb: nothing can be proved with friction; allowed: friction = sticking",
-        origin_of(spec)));
+  refuse_unprovable(spec.scene, origin_of(spec));
   for (const Goal& goal : spec.goals)
     if (std::ranges::find(provable, goal.field) == provable.end())
       throw InputError(fmt::format("{}: goal.{}: nothing can be proved of it; allowed: {}", origin_of(spec),

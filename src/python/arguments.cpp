@@ -37,6 +37,7 @@ const Parameter& parameter_of(const std::string& name) {
   for (const Parameter& parameter : parameters())
     if (parameter.name == name) return parameter;
   std::vector<std::string_view> names{"friction", motor_switch};
+  names.insert(names.end(), words.begin(), words.end());
   for (const auto& [key, member] : whole_numbers) names.push_back(key);
   for (const Parameter& parameter : parameters()) names.push_back(parameter.name);
   throw InputError(fmt::format("{}: unknown parameter{}; allowed: {}", name, did_you_mean(name, names),
@@ -46,14 +47,26 @@ const Parameter& parameter_of(const std::string& name) {
 }  // namespace
 
 Designs::Designs(const py::dict& given, Scene scene) : scene_(scene) {
-  // What other numbers' units hang on comes first.
-  constexpr std::array scales{"radius", "gravity", "mass"};
-  for (const char* name : scales)
+  // What other numbers and their units hang on comes first.
+  constexpr std::array first{"model", "motor_law", "radius", "gravity", "mass"};
+  for (const char* name : first)
     if (given.contains(name)) take(name, given[name]);
   for (const auto& [key, value] : given)
-    if (const auto name = py::cast<std::string>(key); std::ranges::find(scales, name) == scales.end())
+    if (const auto name = py::cast<std::string>(key); std::ranges::find(first, name) == first.end())
       take(name, value);
   broadcast();
+}
+
+/// A word of the scene: its model, or the law of its motor.
+void Designs::take_word(const Option& option, const py::handle& value) {
+  const std::string word = py::isinstance<py::str>(value) ? py::cast<std::string>(value) : std::string();
+  if (!is_choice(option, word))
+    throw InputError(
+        fmt::format("{} = {} is unknown; allowed: {}", option.key, shown(value), allowed_values(option)));
+  if (!has(scene_, option.only_of))
+    throw InputError(fmt::format("{} = {} {}; allowed: {}", option.key, shown(value),
+                                 no_use(scene_, option.only_of), with_model(option.only_of)));
+  std::get<WordSlot>(option.slot).set(scene_, word);
 }
 
 void Designs::take(const std::string& name, const py::handle& value) {
@@ -71,10 +84,11 @@ void Designs::take(const std::string& name, const py::handle& value) {
     scene_.motor_in_flight = py::cast<bool>(value);
     return;
   }
+  if (std::ranges::find(words, name) != words.end()) return take_word(*find_option("", name), value);
   const Parameter& parameter = parameter_of(name);
-  if (!has(scene_.friction, parameter.only_of))
-    throw InputError(fmt::format("{} = {} {}; allowed: {}", name, shown(value), no_use(scene_),
-                                 with_model(*parameter.only_of)));
+  if (!has(scene_, parameter.only_of))
+    throw InputError(fmt::format("{} = {} {}; allowed: {}", name, shown(value),
+                                 no_use(scene_, parameter.only_of), with_model(parameter.only_of)));
   const auto put = [&](double number) {
     if (const auto* member = std::get_if<double Design::*>(&parameter.member)) {
       common_.** member = number;

@@ -14,10 +14,13 @@
 
 #include "leapmap/design.hpp"
 #include "leapmap/scene.hpp"
+#include "spec/options.hpp"
 
 namespace leapmap::python {
 
-inline constexpr std::string_view motor_switch = "motor_in_flight";  ///< a scene's bool
+inline constexpr std::array<std::string_view, 2> words{"model",
+                                                       "motor_law"};  ///< a scene's, but for friction
+inline constexpr std::string_view motor_switch = "motor_in_flight";   ///< a scene's bool
 /// Numbers of the scene that are whole.
 inline constexpr std::array<std::pair<std::string_view, long Scene::*>, 3> whole_numbers{
     {{"jumps", &Scene::jumps}, {"settle", &Scene::settle}, {"most_period", &Scene::most_period}}};
@@ -49,6 +52,7 @@ class Designs {
   };
 
   void take(const std::string& name, const pybind11::handle& value);
+  void take_word(const Option& option, const pybind11::handle& value);
   void broadcast();
 
   Scene scene_;

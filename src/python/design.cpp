@@ -137,7 +137,7 @@ class Problem {
       const double value =
           of_design ? question_.one.design.**of_design : scene.*std::get<double Scene::*>(parameter.member);
       if (is_free || follows || of_each_hoop(parameter.name) || std::isnan(value) ||
-          !has(scene.friction, parameter.only_of))
+          !has(scene, parameter.only_of))
         continue;
       const py::str name{std::string(parameter.name)};
       if (const std::optional<SiUnit> si = si_unit(question_.one, std::string(parameter.name)))

@@ -86,7 +86,7 @@ py::dict gradient(const py::dict& given, const std::string& friction, const std:
   py::dict arrays;
   for (const Parameter& parameter : parameters()) {
     const auto* member = std::get_if<double Design::*>(&parameter.member);
-    if (!member || !has(designs.scene().friction, parameter.only_of)) continue;
+    if (!member || !has(designs.scene(), parameter.only_of)) continue;
     py::array_t<double> array(designs.shape());
     std::ranges::transform(found, array.mutable_data(), [&](const Design& one) { return one.**member; });
     arrays[py::str(std::string(parameter.name))] = array;
@@ -208,6 +208,13 @@ py::list spec_key_rows() {
   return rows;
 }
 
+/// The model and the friction without which there is no such thing.
+void tell_who_has(const OnlyOf& only_of, py::dict& row) {
+  row["model"] = only_of.model ? py::object(py::str(std::string(name_of(*only_of.model)))) : py::none();
+  row["friction"] =
+      only_of.friction ? py::object(py::str(std::string(model_of(*only_of.friction).name))) : py::none();
+}
+
 py::list parameter_rows() {
   py::list rows;
   for (const Parameter& parameter : parameters()) {
@@ -217,8 +224,7 @@ py::list parameter_rows() {
     const auto* of_design = std::get_if<double Design::*>(&parameter.member);
     row["array"] = of_design != nullptr;
     row["default"] = of_design ? Design{}.**of_design : Scene{}.*std::get<double Scene::*>(parameter.member);
-    row["friction"] =
-        parameter.only_of ? py::object(py::str(std::string(model_of(*parameter.only_of).name))) : py::none();
+    tell_who_has(parameter.only_of, row);
     rows.append(row);
   }
   return rows;
@@ -229,8 +235,7 @@ py::list field_rows() {
   for (const Field& field : map_fields()) {
     py::dict row;
     row["name"] = field.name, row["unit"] = field.unit, row["meaning"] = field.long_name;
-    row["friction"] =
-        field.only_of ? py::object(py::str(std::string(model_of(*field.only_of).name))) : py::none();
+    tell_who_has(field.only_of, row);
     const auto* code = std::get_if<Code>(&field.source);
     row["codes"] =
         code ? py::cast(std::vector<std::string>(code->names.begin(), code->names.end())) : py::none();

@@ -147,7 +147,7 @@ py::dict dict_of(const ScatterReport& report, const Spec& spec) {
   told["shrink_all"] = report.shrink_all, told["unsolved"] = report.unsolved;
   for (const Parameter& parameter : parameters())
     if (const auto* member = std::get_if<double Design::*>(&parameter.member);
-        member && has(spec.scene.friction, parameter.only_of))
+        member && has(spec.scene, parameter.only_of))
       made[py::str(std::string(parameter.name))] = column(report.made, *member);
   told["made"] = made;
   Columns outcomes({"jump_height", "jump_time", "spurious_first_jump", "status"}, spec.scene,
@@ -169,6 +169,11 @@ py::dict dict_of(const Motion& motion, const Scene& scene) {
   points["y"] = column(motion.points, &MotionPoint::y);
   points["normal_force"] = column(motion.points, &MotionPoint::normal_force);
   points["friction"] = column(motion.points, &MotionPoint::friction);
+  if (!motion.points.empty() && !std::isnan(motion.points.front().pendulum_angle)) {
+    points["pendulum_angle"] = column(motion.points, &MotionPoint::pendulum_angle);
+    points["pendulum_spin"] = column(motion.points, &MotionPoint::pendulum_spin);
+    points["motor_torque"] = column(motion.points, &MotionPoint::motor_torque);
+  }
   points["phase"] = phase_column(motion.points);
   told["points"] = points;
   phases["t"] = column(motion.phases, &PhaseStart::t),

@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "referee/robot.hpp"
+
 namespace leapmap::referee {
 namespace {
 
@@ -32,6 +34,7 @@ StepControl control_of(const Scene& scene, double tolerance) {
 
 Referee::Referee(const Scene& scene, double tolerance, long most_steps)
     : scene_(scene),
+      tolerance_(tolerance),
       second_(std::sqrt(scene.radius / scene.gravity)),
       integrator_(
           *find_gsl_stepper("gsl-rk8pd"), control_of(scene, tolerance),
@@ -117,6 +120,8 @@ void Referee::meet(const Mode& mode, double end) {
 }
 
 Outcome Referee::solve(const Design& design) {
+  if (scene_.model == Mechanism::pendulum) 
+    return solve_robot(design, scene_, tolerance_, most_steps_, meets_forces);
   system_.body = body_of(design, scene_);
   const double w = design.release_spin / second_;
   at_ = {0.0, scene_.radius, design.release_angle, scene_.radius * w, 0.0, w};

@@ -54,6 +54,7 @@ class Referee {
   void clear(const Motion& lift_off);
 
   Scene scene_;
+  double tolerance_;
   double second_;  ///< sqrt(R/g) [s], in which spins are given
   System system_{};
   GslIntegrator<6> integrator_;

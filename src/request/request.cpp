@@ -190,7 +190,7 @@ std::vector<const Field*> derivative_columns(const Scene& scene, const std::vect
         const auto* same = std::get_if<double Design::*>(&row.member);
         return same && *same == member;
       });
-      if (has(scene.friction, parameter->only_of) &&
+      if (has(scene, parameter->only_of) &&
           (by.empty() || std::ranges::find(by, parameter->name) != by.end()))
         columns.push_back(find_gradient(quantity, member));
     }

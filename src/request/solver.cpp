@@ -15,8 +15,8 @@
 
 namespace leapmap {
 
-IntegrationOptions integration_options(const Numerics& numerics) {
-  IntegrationOptions options = adaptive(resolved_method(numerics), numerics.tolerance);
+IntegrationOptions integration_options(const Numerics& numerics, const Scene& scene) {
+  IntegrationOptions options = adaptive(resolved_method(numerics, scene), numerics.tolerance);
   if (numerics.absolute_tolerance > 0.0) options.control.absolute = numerics.absolute_tolerance;
   options.control.fixed_step = numerics.fixed_step;
   options.max_steps = numerics.max_steps;
@@ -27,7 +27,7 @@ namespace {
 
 constexpr std::string_view semi_analytic = "semi-analytic solver", integrator = "integration in time";
 
-bool is_exact(const Request& request) { return resolved_method(request.numerics) == "exact"; }
+bool is_exact(const Request& request) { return resolved_method(request) == "exact"; }
 
 Wanted wanted_of(const Request& request) {
   Wanted wanted{.first_jump_time = false, .jump_time = false, .descent = false, .landing = false};
@@ -48,6 +48,8 @@ void take_measures(const Outcome& again, bool clears, bool ways, Outcome& outcom
   std::size_t alike = 0;
   const std::size_t most = std::min(outcome.later_jumps.size(), again.later_jumps.size());
   while (alike < most && is_same(outcome.later_jumps[alike], again.later_jumps[alike])) ++alike;
+  for (double Outcome::*const of_robot : {&Outcome::motor_max_torque, &Outcome::efficiency})
+    if (ways) outcome.*of_robot = again.*of_robot;
   for (const JumpRow& row : jump_rows) {
     const bool is_wall = row.first == &Outcome::clears_from || row.first == &Outcome::clears_to;
     if (!(is_wall ? clears : ways && is_of_way(row.first))) continue;
@@ -77,7 +79,7 @@ Solver jump_measures(const Request& request) {
   JumpSolver<double> next = ways          ? model.ways(scene, tolerance)
                             : model.jumps ? model.jumps(scene, tolerance, Wanted{})
                                           : need(model, &Model::integrated_jumps, integrator)(
-                                                scene, integration_options(request.numerics));
+                                                scene, integration_options(request.numerics, request.scene));
   if (clears)
     next = [next, scene](Start start, std::span<const Design> designs, std::span<ContactState<double>> states,
                          std::span<Outcome> outcomes) {
@@ -127,10 +129,10 @@ namespace {
 Solver solver_at_unit_size(const Request& request) {
   const Scene scene = scene_asked(request);
   const Model& model = model_of(scene);
-  Solver solver =
-      is_exact(request)
-          ? need(model, &Model::exact, semi_analytic)(scene, request.numerics.tolerance, wanted_of(request))
-          : need(model, &Model::integration, integrator)(scene, integration_options(request.numerics));
+  Solver solver = is_exact(request) ? need(model, &Model::exact, semi_analytic)(
+                                          scene, request.numerics.tolerance, wanted_of(request))
+                                    : need(model, &Model::integration, integrator)(
+                                          scene, integration_options(request.numerics, request.scene));
   const Solver after = follow_up(request);
   if (!after) return solver;
   return [solver = std::move(solver), after](std::span<const Design> designs, std::span<Outcome> outcomes) {
@@ -228,11 +230,11 @@ ScatterSolver scatter_solver_of(const Request& request, std::shared_ptr<const So
 
 Motion tell(const Design& design, const Request& request, double interval) {
   const Model& model = model_of(request.scene);
-  Motion motion = is_exact(request)
-                      ? need(model, &Model::tell_exactly, semi_analytic)(design, request.scene,
-                                                                         request.numerics.tolerance, interval)
-                      : need(model, &Model::tell_by_integration, integrator)(
-                            design, request.scene, integration_options(request.numerics), interval);
+  Motion motion = is_exact(request) ? need(model, &Model::tell_exactly, semi_analytic)(
+                                          design, request.scene, request.numerics.tolerance, interval)
+                                    : need(model, &Model::tell_by_integration, integrator)(
+                                          design, request.scene,
+                                          integration_options(request.numerics, request.scene), interval);
   if (const Solver after = follow_up(request)) after({&design, 1}, {&motion.outcome, 1});
   return motion;
 }

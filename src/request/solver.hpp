@@ -12,7 +12,7 @@
 namespace leapmap {
 
 /// The stepper and its controls that numerics asks for, where the method is one of GSL's.
-IntegrationOptions integration_options(const Numerics& numerics);
+IntegrationOptions integration_options(const Numerics& numerics, const Scene& scene);
 
 /// The solver of the request's method, for all but derivatives and statistics.
 Solver make_solver(const Request& request);

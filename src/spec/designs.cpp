@@ -139,14 +139,16 @@ std::string hop_command(const Spec& spec, const Design& design) {
   for (const Option* parameter : design_parameters(spec))
     if (const double value = value_of(*parameter, design); !std::isnan(value))
       command += fmt::format(" {} {}", flag_of(*parameter), value);
+  if (spec.scene.model != Scene{}.model)
+    command +=
+        fmt::format(" --model {} --motor-law {}", name_of(spec.scene.model), name_of(spec.scene.motor_law));
   if (spec.scene.friction != Scene{}.friction)
     command += fmt::format(" --friction {}", model_of(spec.scene).name);
   const Scales scales = scales_of(spec, design);
   const double wall = 0.5 * wall_in_radii(spec.scene, design.size);
   for (const Parameter& parameter : parameters())
     if (const auto* member = std::get_if<double Scene::*>(&parameter.member);
-        member && has(spec.scene.friction, parameter.only_of) &&
-        !(*member == &Scene::mass && scales.mass == 0.0))
+        member && has(spec.scene, parameter.only_of) && !(*member == &Scene::mass && scales.mass == 0.0))
       command += fmt::format(" --set {}={}", parameter.name,
                              *member == &Scene::radius         ? scales.radius
                              : *member == &Scene::mass         ? scales.mass
@@ -157,8 +159,8 @@ std::string hop_command(const Spec& spec, const Design& design) {
   if (spec.scene.settle > 0)
     command += fmt::format(" --set gait.settle={} --set gait.most_period={} --set gait.tolerance={}",
                            spec.scene.settle, spec.scene.most_period, spec.scene.gait_tolerance);
-  command += fmt::format(" --set method={} --set tolerance={}", resolved_method(spec.numerics),
-                         spec.numerics.tolerance);
+  command +=
+      fmt::format(" --set method={} --set tolerance={}", resolved_method(spec), spec.numerics.tolerance);
   if (spec.numerics.absolute_tolerance > 0.0)
     command += fmt::format(" --set absolute_tolerance={}", spec.numerics.absolute_tolerance);
   if (spec.numerics.fixed_step > 0.0)

@@ -49,7 +49,7 @@ std::vector<std::string> texts_of(Spec& spec, const Option& option) {
     const auto goal = std::ranges::find(spec.goals, option.key, &Goal::field);
     return goal == spec.goals.end() ? std::vector<std::string>{} : std::vector{text_of(*goal)};
   }
-  if (std::holds_alternative<FrictionSlot>(option.slot)) return {std::string(model_of(spec.scene).name)};
+  if (const auto* word = std::get_if<WordSlot>(&option.slot)) return {std::string(word->word(spec.scene))};
   if (const auto* slot = std::get_if<SwitchSlot>(&option.slot)) return {(*slot)(spec) ? "true" : "false"};
   if (const auto* slot = std::get_if<TextSlot>(&option.slot)) return {(*slot)(spec)};
   if (const auto* slot = std::get_if<TextsSlot>(&option.slot)) return (*slot)(spec);
@@ -122,7 +122,7 @@ std::optional<std::string> first_difference(const Spec& original_there, const Sp
                                             bool only_designs) {
   Spec there = original_there, here = original_here;
   for (Spec* spec : {&there, &here}) {
-    spec->numerics.method = resolved_method(spec->numerics);
+    spec->numerics.method = resolved_method(*spec);
     spec->output.file.clear();
     const bool varies = !spec->points.empty() ||
                         std::ranges::find(spec->axes, "mu_static", &Axis::key) != spec->axes.end() ||

@@ -28,6 +28,23 @@ std::vector<std::string_view> methods() {
   return names;
 }
 
+std::vector<std::string_view> mechanisms() { return {mechanism_names.begin(), mechanism_names.end()}; }
+
+std::vector<std::string_view> motor_laws() { return {motor_law_names.begin(), motor_law_names.end()}; }
+
+/// The value of an enumeration whose names are these.
+struct PlaceIn {
+  std::size_t place;
+  template <class Enumeration>
+  operator Enumeration() const {
+    return static_cast<Enumeration>(place);
+  }
+};
+template <class Names>
+PlaceIn place_in(const Names& names, std::string_view word) {
+  return {static_cast<std::size_t>(std::ranges::find(names, word) - names.begin())};
+}
+
 std::vector<std::string_view> switch_words() { return {"true", "false"}; }
 
 std::vector<std::string_view> names_same_in_si() {
@@ -82,9 +99,21 @@ std::vector<std::string_view> design_parameter_names() {
 
 /// The keys that are no parameters, in order.
 const std::array other_keys{
+    Option{
+        "scene",
+        "model",
+        WordSlot{[](const Scene& scene) { return name_of(scene.model); },
+                 [](Scene& scene, std::string_view word) { scene.model = place_in(mechanism_names, word); },
+                 true},
+        "",
+        "what rolls; pendulum: a hoop with a pendulum on its axis and a motor between them",
+        {},
+        mechanisms},
     Option{"scene",
            "friction",
-           FrictionSlot{},
+           WordSlot{[](const Scene& scene) { return model_of(scene).name; },
+                    [](Scene& scene, std::string_view word) { scene.friction = find_model(word)->friction; },
+                    true},
            "",
            "contact model; sticking: never slips, as in the paper; coulomb: Coulomb friction",
            {},
@@ -102,6 +131,18 @@ const std::array other_keys{
            "whether a motor drives the hoop in flight too; else it idles there",
            {},
            switch_words},
+    Option{"design",
+           "motor_law",
+           WordSlot{
+               [](const Scene& scene) { return name_of(scene.motor_law); },
+               [](Scene& scene, std::string_view word) { scene.motor_law = place_in(motor_law_names, word); },
+               false},
+           "",
+           "what the motor does with its torque; until_: brakes and holds at motor_target; speed, angle: "
+           "regulates to it",
+           {},
+           motor_laws,
+           Mechanism::pendulum},
     Option{"design", "points", TextSlot{[](Spec& s) -> std::string& { return s.points; }}, "",
            "CSV file with one design in a row instead of axes; its header names parameters"},
     Option{"numerics",
@@ -308,7 +349,8 @@ std::vector<Option> all_options() {
   for (const std::string_view section : spec_sections) {
     const auto add_keys = [&](bool pick_model) {
       std::ranges::copy_if(other_keys, std::back_inserter(all), [&](const Option& key) {
-        return key.section == section && std::holds_alternative<FrictionSlot>(key.slot) == pick_model;
+        const auto* word = std::get_if<WordSlot>(&key.slot);
+        return key.section == section && (word && word->picks_model) == pick_model;
       });
     };
     add_keys(true);
@@ -359,7 +401,7 @@ std::vector<const Option*> hop_options() {
 std::vector<const Option*> design_parameters(const Spec& spec) {
   std::vector<const Option*> parameters = design_parameters();
   std::erase_if(parameters, [&](const Option* parameter) {
-    return !has(spec.scene.friction, parameter->only_of) &&
+    return !has(spec.scene, parameter->only_of) &&
            std::ranges::find(spec.list.columns, parameter->key, &Axis::key) == spec.list.columns.end();
   });
   return parameters;
@@ -399,8 +441,9 @@ std::string flag_of(const Option& option) {
 const Option* find_option(std::string_view section, std::string_view key) {
   if (const Option* of_hoop = find_hoop_option(section, key)) return of_hoop;
   const auto found = std::ranges::find_if(spec_options(), [&](const Option& o) {
-    const bool there =
-        o.section == section || (section == "design" && std::holds_alternative<ParameterSlot>(o.slot));
+    const bool there = o.section == section ||
+                       (section == "design" && std::holds_alternative<ParameterSlot>(o.slot)) ||
+                       (section == "scene" && std::holds_alternative<WordSlot>(o.slot));
     return o.key == key && (section.empty() || there);
   });
   return found == spec_options().end() ? nullptr : &*found;

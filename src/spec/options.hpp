@@ -27,8 +27,12 @@ struct HoopSlot {};
 struct SceneSlot {
   double Scene::*member;
 };
-/// The model of the contact, by its name.
-struct FrictionSlot {};
+/// A word of the scene's, one of the option's choices.
+struct WordSlot {
+  std::string_view (*word)(const Scene&);
+  void (*set)(Scene&, std::string_view word);
+  bool picks_model;  ///< other keys have effects or not by it
+};
 /// How much a parameter differs in hoops as made: { normal = ... } or { uniform = ... }.
 struct SpreadSlot {};
 /// What a field of a hoop must be: { at_least = ... }, { at_most = ... }, { is = ... }.
@@ -43,14 +47,14 @@ using TextsSlot = std::vector<std::string>& (*)(Spec&);
 struct Option {
   std::string_view section;
   std::string_view key;
-  std::variant<ParameterSlot, HoopSlot, SceneSlot, FrictionSlot, SwitchSlot, NumberSlot, IntegerSlot,
-               TextSlot, TextsSlot, SpreadSlot, GoalSlot>
+  std::variant<ParameterSlot, HoopSlot, SceneSlot, WordSlot, SwitchSlot, NumberSlot, IntegerSlot, TextSlot,
+               TextsSlot, SpreadSlot, GoalSlot>
       slot;
   std::string_view unit;  ///< of model/own_units.hpp; "1": a pure number
   std::string_view meaning;
   Range range{};                                    ///< numbers and integers
   std::vector<std::string_view> (*choices)() = {};  ///< texts: what is allowed; unset: anything
-  std::optional<Friction> only_of{};                ///< the one model that has it; unset: every model
+  OnlyOf only_of{};                                 ///< the scenes that have it
   bool (*also)(std::string_view) = {};              ///< texts that are allowed besides
   std::string_view also_told{};                     ///< those in words
 };

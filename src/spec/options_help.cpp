@@ -16,8 +16,8 @@ std::string default_value(const Option& option) {
   return std::visit(
       [&](const auto& slot) -> std::string {
         using Slot = std::decay_t<decltype(slot)>;
-        if constexpr (std::is_same_v<Slot, FrictionSlot>) {
-          return fmt::format("\"{}\"", model_of(spec.scene).name);
+        if constexpr (std::is_same_v<Slot, WordSlot>) {
+          return fmt::format("\"{}\"", slot.word(spec.scene));
         } else if constexpr (std::is_same_v<Slot, SceneSlot>) {
           return fmt::format("{}", spec.scene.*slot.member);
         } else if constexpr (std::is_same_v<Slot, ParameterSlot>) {

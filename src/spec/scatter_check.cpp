@@ -49,8 +49,9 @@ void check_spread(const Spec& spec, const Spread& spread) {
     refuse(spec, "scatter", spread.parameter, "is not a parameter of a design", "one of them");
   if (std::ranges::count(spec.scatter.spreads, spread.parameter, &Spread::parameter) > 1)
     refuse(spec, "scatter", spread.parameter, "appears twice", "once");
-  if (!has(spec.scene.friction, option->only_of))
-    refuse(spec, "scatter", spread.parameter, no_use(spec.scene), with_model(*option->only_of));
+  if (!has(spec.scene, option->only_of))
+    refuse(spec, "scatter", spread.parameter, no_use(spec.scene, option->only_of),
+           with_model(option->only_of));
   if (!in_range(*option, spread.width))
     refuse(spec, "scatter", spread.parameter, fmt::format("is {} wide", spread.width), "a width in [0, inf)");
   const auto variable = find_variable(spread.parameter, spec.hoop ? &*spec.hoop : nullptr);
@@ -104,8 +105,8 @@ void check_goal(const Spec& spec, const Goal& goal) {
   if (std::holds_alternative<OfMade>(find_field(goal.field)->source))
     refuse(spec, "goal", goal.field, "describes manufactured hoops, and is not a goal for one",
            "with leapmap design");
-  if (!has(spec.scene.friction, option->only_of))
-    refuse(spec, "goal", goal.field, no_use(spec.scene), with_model(*option->only_of));
+  if (!has(spec.scene, option->only_of))
+    refuse(spec, "goal", goal.field, no_use(spec.scene, option->only_of), with_model(option->only_of));
   const bool some = std::isfinite(goal.at_least) || std::isfinite(goal.at_most);
   if (!(some && goal.at_least <= goal.at_most))
     refuse(spec, "goal", goal.field,

@@ -50,7 +50,7 @@ struct Assign {
     spec.scene.*slot.member = one_number();
   }
   void operator()(NumberSlot slot) const { slot(spec) = one_number(); }
-  void operator()(FrictionSlot) const { spec.scene.friction = find_model(text(*entry.node))->friction; }
+  void operator()(WordSlot slot) const { slot.set(spec.scene, text(*entry.node)); }
   void operator()(SwitchSlot slot) const {
     const toml::value<bool>* value = entry.node->as_boolean();
     if (!value) refuse(entry, "is not true or false", allowed_values(*entry.option));
@@ -218,15 +218,16 @@ bool leave_out(const Entry& entry, Spec& spec) {
 /// Nothing given is ignored without a word. A file may spell defaults out.
 void refuse_what_has_no_use(const std::vector<Entry>& entries, Spec& spec) {
   const bool chosen = std::ranges::any_of(entries, [](const Entry& entry) {
-    return entry.place == command_line && std::holds_alternative<FrictionSlot>(entry.option->slot);
+    const auto* word = std::get_if<WordSlot>(&entry.option->slot);
+    return entry.place == command_line && word && word->picks_model;
   });
   std::vector<std::string_view> left_out;
   for (const Entry& entry : entries) {
-    if (has(spec.scene.friction, entry.option->only_of) ||
+    if (has(spec.scene, entry.option->only_of) ||
         (entry.place != command_line && is_default(*entry.option, entry)))
       continue;
     if (!chosen || !leave_out(entry, spec))
-      refuse(entry, no_use(spec.scene), with_model(*entry.option->only_of));
+      refuse(entry, no_use(spec.scene, entry.option->only_of), with_model(entry.option->only_of));
     left_out.push_back(entry.key);
   }
   if (!left_out.empty())
@@ -286,9 +287,9 @@ void read_points_of(Spec& spec) {
   for (const Axis& column : spec.list.columns) {
     if (find_body_number(column.key)) continue;  // check_hoop's
     const Option& option = *find_option("design", column.key);
-    if (!has(spec.scene.friction, option.only_of))
+    if (!has(spec.scene, option.only_of))
       throw InputError(fmt::format("{}: column '{}': {}; allowed: {}", spec.points, column.key,
-                                   no_use(spec.scene), with_model(*option.only_of)));
+                                   no_use(spec.scene, option.only_of), with_model(option.only_of)));
     if (spec.hoop && follows_from_body(member_of(option)))
       throw InputError(
           fmt::format("{}: column '{}': has no effect, because [hoop] in {} gives it; allowed: "
@@ -441,10 +442,12 @@ void refuse_contradictions(const std::vector<Entry>& entries, const Spec& spec) 
     const double set = key == "fixed_step"           ? spec.numerics.fixed_step
                        : key == "absolute_tolerance" ? spec.numerics.absolute_tolerance
                                                      : 0.0;
-    if (set > 0.0 && resolved_method(spec.numerics) == "exact")
+    if (set > 0.0 && resolved_method(spec) == "exact")
       refuse(entry, fmt::format("method \"{}\" takes no steps", spec.numerics.method),
              "with method = \"gsl-...\"");
   }
+  if (std::ranges::find(spec.axes, "motor_gain", &Axis::key) == spec.axes.end() && spec.points.empty())
+    check_gain(spec.design, spec.scene, origin_of(spec));
   if (!spec.points.empty() && !spec.axes.empty())
     throw InputError(
         fmt::format("{}: design.points and an axis ({}) exclude each other; allowed: one of them",

@@ -31,7 +31,12 @@ std::string text_of(const Goal& goal);
 bool stores(const Output& output, const Field& field);
 
 /// The name of the method that numerics.method stands for: "auto" is settled here. Rolling conserves energy
-/// and sliding reduces to quadratures, so that it is exact.
-std::string resolved_method(const Numerics& numerics);
+/// and sliding reduces to quadratures, so that hoops are solved exactly; a pendulum is integrated.
+std::string resolved_method(const Numerics& numerics, const Scene& scene);
+/// Of a spec or a request.
+template <class Asked>
+std::string resolved_method(const Asked& asked) {
+  return resolved_method(asked.numerics, asked.scene);
+}
 
 }  // namespace leapmap

@@ -42,8 +42,8 @@ void check_values(const Spec& spec, const std::vector<Axis>& axes) {
     if (!option || !(std::holds_alternative<ParameterSlot>(option->slot) || find_body_number(axis.key)))
       refuse(spec, axis.key, "is not a parameter of a design", "an axis of one");
     if (std::ranges::count(axes, axis.key, &Axis::key) > 1) refuse(spec, axis.key, "appears twice", "once");
-    if (!has(spec.scene.friction, option->only_of))
-      refuse(spec, axis.key, no_use(spec.scene), with_model(*option->only_of));
+    if (!has(spec.scene, option->only_of))
+      refuse(spec, axis.key, no_use(spec.scene, option->only_of), with_model(option->only_of));
     if (axis.values.empty()) refuse(spec, axis.key, "has no values", "one or more");
     if (axis.free)
       refuse(spec, axis.key, "is between bounds: 'count' is missing",
@@ -86,14 +86,14 @@ void check_gradients(const Spec& spec) {
   if (output.gradients.empty() && !output.gradients_by.empty())
     refuse(spec, "gradients_by", "has no effect without gradients",
            "for example with gradients = [\"jump_height\"]");
-  if (!output.gradients.empty() && resolved_method(spec.numerics) != "exact")
+  if (!output.gradients.empty() && resolved_method(spec) != "exact")
     refuse(spec, "gradients", fmt::format("has no effect with method \"{}\"", spec.numerics.method),
            "with method = \"exact\"");
   for (const std::string& name : output.gradients) {
     const Field* field = find_field(name);
-    if (field && !has(spec.scene.friction, field->only_of))
-      refuse(spec, "gradients", fmt::format("'{}' {}", name, no_use(spec.scene)),
-             with_model(*field->only_of));
+    if (field && !has(spec.scene, field->only_of))
+      refuse(spec, "gradients", fmt::format("'{}' {}", name, no_use(spec.scene, field->only_of)),
+             with_model(field->only_of));
     if (field && can_be_differentiated(*field) && !can_be_differentiated(*field, spec.scene))
       refuse(spec, "gradients",
              fmt::format("'{}' has no derivatives if hoops of several sizes clear one wall", name),
@@ -104,9 +104,9 @@ void check_gradients(const Spec& spec) {
     if (find_body_number(name) && std::ranges::find(of_body, name, &Variable::key) == of_body.end())
       refuse(spec, "gradients_by", fmt::format("'{}' is no number of this spec's [hoop] that may vary", name),
              of_body.empty() ? "with [hoop]" : fmt::format("{}", fmt::join(keys_of(of_body), ", ")));
-    if (const Option* option = find_option("", name); option && !has(spec.scene.friction, option->only_of))
-      refuse(spec, "gradients_by", fmt::format("'{}' {}", name, no_use(spec.scene)),
-             with_model(*option->only_of));
+    if (const Option* option = find_option("", name); option && !has(spec.scene, option->only_of))
+      refuse(spec, "gradients_by", fmt::format("'{}' {}", name, no_use(spec.scene, option->only_of)),
+             with_model(option->only_of));
   }
 }
 
@@ -136,6 +136,9 @@ void check_labels(const Spec& spec) {
 void check_body(const Spec& spec) {
   check_hoop(spec);
   if (!spec.hoop) return;
+  if (spec.scene.model != Mechanism::hoop)
+    refuse(spec, "hoop", "draws masses that are fixed to the ring, which a pendulum is not",
+           "mass_ratio, offset_ratio, pendulum_inertia and inertia_factor");
   Design design = spec.design;
   apply_ratios(reduce_checked(*spec.hoop), design);
   for (double Design::*ratio : body_ratios)
@@ -182,6 +185,8 @@ void check_count(const Spec& spec) {
 /// That what audits can judge the scene.
 void check_auditor(const Spec& spec) {
   if (spec.numerics.audit_by != "proof") return;
+  if (spec.scene.model != Mechanism::hoop)
+    refuse(spec, "audit_by", "is proof, which cannot judge pendulums", "method");
   if (spec.scene.friction != Friction::sticking)
     refuse(spec, "audit_by", "is proof, which cannot judge hoops with friction", "method, or without slip");
 }
@@ -189,18 +194,22 @@ void check_auditor(const Spec& spec) {
 /// What the scene's model cannot do.
 void check_capabilities(const Spec& spec) {
   const Model& model = model_of(spec.scene);
-  const bool exact = resolved_method(spec.numerics) == "exact";
+  const bool exact = resolved_method(spec) == "exact";
   const auto refuse_without = [&](bool can, std::string_view key, std::string_view what,
                                   const std::string& allowed) {
     if (!can)
-      refuse(spec, key, fmt::format("needs {}, which the model \"{}\" lacks", what, model.name), allowed);
+      refuse(spec, key,
+             fmt::format("needs {}, which the model \"{}\" lacks", what,
+                         model.mechanism == Mechanism::hoop ? model.name : name_of(model.mechanism)),
+             allowed);
   };
   if (exact)
     refuse_without(model.exact, "method", "a semi-analytic solver", "a stepper, for example \"gsl-rk8pd\"");
   else
     refuse_without(model.integration, "method", "an integration in time", "\"exact\"");
   if (spec.numerics.audit > 0.0)
-    refuse_without(model.exact && model.integration, "audit", "a second method", "0");
+    refuse_without(model.integration && (model.exact || !model.stepper.empty()), "audit", "a second method",
+                   "0");
   if (!spec.output.gradients.empty()) refuse_without(model.gradients, "gradients", "derivatives", "none");
   const auto is_of_way = [](const std::string& name) {
     const Field* field = find_field(name);
@@ -237,14 +246,14 @@ void check_spec(const Spec& spec) {
             for (const std::string& text : slot(copy)) check_text(spec, option, text);
         },
         option.slot);
-  if (resolved_method(spec.numerics) == "exact" &&
+  if (resolved_method(spec) == "exact" &&
       (spec.numerics.fixed_step > 0.0 || spec.numerics.absolute_tolerance > 0.0))
     refuse(spec, "fixed_step or absolute_tolerance", "has no effect, because exact takes no steps",
            "with method = \"gsl-...\"");
   for (const auto& [key, names] : {std::pair{"maximize", &spec.maximize}, {"minimize", &spec.minimize}})
     if (!names->empty() && spec.list.columns.empty())  // a list may tell what it was found for
       refuse(spec, key, fmt::format("'{}' has no effect here", names->front()), "with leapmap design");
-  if (spec.scene.settle > 0 && resolved_method(spec.numerics) != "exact")
+  if (spec.scene.settle > 0 && resolved_method(spec) != "exact")
     refuse(spec, "settle", fmt::format("has no effect with method \"{}\"", spec.numerics.method),
            "with method = \"exact\"");
   for (const std::string& name : spec.nominal_units)

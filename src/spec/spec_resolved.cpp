@@ -58,8 +58,8 @@ std::optional<std::string> value_of(const Option& option, Spec& spec) {
           const double value = spec.scene.*slot.member;
           const bool in_metres = slot.member == &Scene::clear_height && spec.scene.clear_height_in_metres;
           return in_metres ? fmt::format("\"{} m\"", value) : toml_number(value);
-        } else if constexpr (std::is_same_v<Slot, FrictionSlot>) {
-          return quoted_text(std::string(model_of(spec.scene).name));
+        } else if constexpr (std::is_same_v<Slot, WordSlot>) {
+          return quoted_text(std::string(slot.word(spec.scene)));
         } else if constexpr (std::is_same_v<Slot, NumberSlot>) {
           return toml_number(slot(spec));
         } else if constexpr (std::is_same_v<Slot, SpreadSlot>) {
@@ -95,9 +95,16 @@ bool is_of_body(const Spec& spec, const Option& option) {
                    : of_scene && (of_scene->member == &Scene::radius || of_scene->member == &Scene::mass);
 }
 
+/// What only another mechanism than the scene's has; of a hoop also that it is one, so that programs which
+/// know nothing else can read its maps.
+bool is_of_other_mechanism(const Option& option, const Scene& scene) {
+  if (option.key == "model" && option.section == "scene") return scene.model == Mechanism::hoop;
+  return option.only_of.model && *option.only_of.model != scene.model;
+}
+
 std::string text_of(const Spec& original, bool spaced) {
   Spec spec = original;
-  spec.numerics.method = resolved_method(spec.numerics);
+  spec.numerics.method = resolved_method(spec);
   // The axes of [hoop] stand in a section of their own.
   const bool has_order =
       std::ranges::any_of(spec.axes, [](const Axis& axis) { return find_body_number(axis.key) != nullptr; });
@@ -112,6 +119,7 @@ std::string text_of(const Spec& original, bool spaced) {
   };
   for (const Option& option : spec_options()) {
     if (option.section == "gait" && spec.scene.settle == 0) continue;
+    if (is_of_other_mechanism(option, spec.scene)) continue;
     // Axes come after all numbers of the section, in the order of the map's dimensions.
     if (option.key == "points")
       for (const Axis& axis : spec.axes)
@@ -161,8 +169,10 @@ bool stores(const Output& output, const Field& field) {
                                : std::ranges::find(output.fields, field.name) != output.fields.end();
 }
 
-std::string resolved_method(const Numerics& numerics) {
-  return numerics.method == "auto" ? "exact" : numerics.method;
+std::string resolved_method(const Numerics& numerics, const Scene& scene) {
+  if (numerics.method != "auto") return numerics.method;
+  const std::string_view stepper = model_of(scene).stepper;
+  return std::string(stepper.empty() ? "exact" : stepper);
 }
 
 }  // namespace leapmap

@@ -58,7 +58,7 @@ std::vector<double Design::*> inputs_of(Friction friction) {
   std::vector<double Design::*> inputs;
   for (const Parameter& parameter : parameters())
     if (const auto* member = std::get_if<double Design::*>(&parameter.member);
-        member && has(friction, parameter.only_of))
+        member && has(Scene{.friction = friction}, parameter.only_of))
       inputs.push_back(*member);
   return inputs;
 }

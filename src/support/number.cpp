@@ -22,7 +22,8 @@ std::optional<double> number_in(std::string_view text) {
 
 std::string toml_number(double value) {
   std::string digits = fmt::format("{}", value);
-  return digits.find_first_of(".e") == std::string::npos ? digits + ".0" : digits;  // no integer
+  const bool is_integer = digits.find_first_of(".en") == std::string::npos;  // and not inf
+  return is_integer ? digits + ".0" : digits;
 }
 
 }  // namespace leapmap

@@ -48,7 +48,7 @@ std::string wrong_number(const Outcome& stored, const Proof& proof, double allow
 
 void note(const Spec& spec, const AuditSample& sample, const Design& design, const Proof& proof,
           double allowed, JudgedMap& judged) {
-  constexpr std::size_t most_findings = 20;
+  constexpr std::size_t most_told = 20;
   ++judged.looked_at;
   if (sample.outcome.status == Status::failed) {
     ++judged.failed;
@@ -70,7 +70,7 @@ void note(const Spec& spec, const AuditSample& sample, const Design& design, con
     --judged.proved, ++judged.undecided["an event within rounding"];
     return;
   }
-  if (++judged.wrong <= most_findings)
+  if (++judged.wrong <= most_told)
     judged.findings.push_back(
         fmt::format("design {}: {}; {}", sample.number, wrong, hop_command(spec, design)));
 }

@@ -136,20 +136,21 @@ std::optional<RetryReport> resolve_all(const hdf5::File& file, const std::string
   const std::int64_t before =
       hdf5::has_attribute(file, "retry_designs") ? hdf5::read_integer(file, "retry_designs", 0) : 0;
   hdf5::write_attribute(file, "retry_designs", before + static_cast<std::int64_t>(report.retried));
-  hdf5::write_attribute(file, "retry_method", resolved_method(spec.numerics));
+  hdf5::write_attribute(file, "retry_method", resolved_method(spec));
   hdf5::write_attribute(file, "retry_tolerance", spec.numerics.tolerance);
   return report;
 }
 
 }  // namespace
 
-Numerics retry_numerics(const Numerics& there, const Numerics& here) {
-  const bool other = resolved_method(there) != resolved_method(here) || there.tolerance != here.tolerance ||
+Numerics retry_numerics(const Numerics& there, const Numerics& here, const Scene& scene) {
+  const bool other = resolved_method(there, scene) != resolved_method(here, scene) ||
+                     there.tolerance != here.tolerance ||
                      there.absolute_tolerance != here.absolute_tolerance ||
                      there.fixed_step != here.fixed_step || there.max_steps != here.max_steps;
   if (other) return here;
   Numerics numerics;
-  numerics.method = audit_method(there);
+  numerics.method = audit_method(there, scene);
   numerics.tolerance = std::min(there.tolerance, 1e-12);
   return numerics;
 }
@@ -193,7 +194,7 @@ std::optional<RetryReport> retry_failed(const std::string& path, const RetryOpti
     const MapReader reader(map, locking);
     return spec_of(reader, map);
   }();
-  spec.numerics = retry_numerics(spec.numerics, options.how.value_or(spec.numerics));
+  spec.numerics = retry_numerics(spec.numerics, options.how.value_or(spec.numerics), spec.scene);
   return retry_with(map, spec, options.threads, locking, latched(options.stop_requested));
 }
 

@@ -14,7 +14,7 @@ namespace leapmap {
 
 /// How failed designs of a map made by `there` are solved again: as `here` says if that is another way, else
 /// by the method that audits it.
-Numerics retry_numerics(const Numerics& there, const Numerics& here);
+Numerics retry_numerics(const Numerics& there, const Numerics& here, const Scene& scene);
 
 /// retry_failed of the map `path`, which is of this spec, spec.numerics saying how.
 std::optional<RetryReport> retry_with(const std::string& path, const Spec& spec, int threads,

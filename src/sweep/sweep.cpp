@@ -198,7 +198,7 @@ Report sweep(const Spec& spec, const std::string& path, const SweepOptions& aske
     opening.emplace_back(shard_tiles_attribute, bits_of(tiling.chosen(), whole.size()));
   }
   opening.emplace_back("threads", std::int64_t{thread_count(options.threads)});
-  if (spec.numerics.audit > 0.0) opening.emplace_back("audit_method", auditor_of(spec.numerics));
+  if (spec.numerics.audit > 0.0) opening.emplace_back("audit_method", auditor_of(spec.numerics, spec.scene));
   if (is_done(map, spec, opening, options, locking)) return report_on(map, tiling, locking);
   MapWriter writer = begin_map(map, spec, layout, tiling, opening, options, locking);
   try {

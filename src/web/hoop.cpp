@@ -93,7 +93,7 @@ LEAPMAP_EXPORT const char* field_text(int i) {
 LEAPMAP_EXPORT const double* gradient(int friction, double tolerance, int field) {
   Scene scene = page.scene(friction);
   scene.jumps = 1;
-  const auto all = leapmap::parameters();
+  const auto all = hoop_parameters();
   told.gradient.assign(all.size(), Outcome::none);
   const auto of = number_of(field_of(field));
   if (!of) return told.gradient.data();

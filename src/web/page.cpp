@@ -37,18 +37,26 @@ DualJumpSolver dual_solver(const Scene& scene, double tolerance) {
 }
 
 void fill(std::span<const double> values, Design& design, Scene& scene) {
-  const auto all = leapmap::parameters();
+  const auto all = hoop_parameters();
   for (std::size_t i = 0; i < all.size(); ++i) value_of(all[i], design, scene) = values[i];
 }
 
 }  // namespace
+
+std::span<const Parameter> hoop_parameters() {
+  const auto all = leapmap::parameters();
+  const auto first = std::find_if(all.begin(), all.end(), [](const Parameter& parameter) {
+    return parameter.only_of.model == Mechanism::pendulum;
+  });
+  return all.first(static_cast<std::size_t>(first - all.begin()));
+}
 
 Page page;
 
 Page::Page() {
   Design design;
   Scene scene;
-  for (const Parameter& parameter : leapmap::parameters())
+  for (const Parameter& parameter : hoop_parameters())
     parameters.push_back(value_of(parameter, design, scene));
 }
 
@@ -68,10 +76,10 @@ Scene Page::scene(int friction) const {
   return scene;
 }
 
-const Parameter& parameter_of(int number) { return leapmap::parameters()[static_cast<std::size_t>(number)]; }
+const Parameter& parameter_of(int number) { return hoop_parameters()[static_cast<std::size_t>(number)]; }
 
 std::string variable_key(int number) {
-  const auto all = leapmap::parameters();
+  const auto all = hoop_parameters();
   auto at = static_cast<std::size_t>(number);
   if (at < all.size()) return std::string(all[at].name);
   at -= all.size();
@@ -153,7 +161,7 @@ void tell_more(const Scene& scene, double tolerance, std::span<const Design> des
 }
 
 /// Names by number, null after the last.
-LEAPMAP_EXPORT const char* parameter_name(int i) { return name_at(leapmap::parameters(), i); }
+LEAPMAP_EXPORT const char* parameter_name(int i) { return name_at(hoop_parameters(), i); }
 LEAPMAP_EXPORT const char* field_name(int i) { return name_at(map_fields(), i); }
 
 /// What a code of a field means; null: it is no code, or there is none so large.

@@ -44,6 +44,9 @@ struct Page {
 };
 extern Page page;
 
+/// Those that hoops have, which are the first of the table: the page solves no pendulums.
+std::span<const Parameter> hoop_parameters();
+
 /// The parameter of a number.
 const Parameter& parameter_of(int number);
 

@@ -312,10 +312,10 @@ TEST(Audit, ConvictsOneWrongDerivativeWithFriction) {
 
 TEST(Audit, NeverAuditsAMethodByItself) {
   Numerics numerics;
-  EXPECT_NE(audit_method(numerics), resolved_method(numerics));
+  EXPECT_NE(audit_method(numerics, Scene{}), resolved_method(numerics, Scene{}));
   for (const GslStepper& stepper : gsl_steppers()) {
     numerics.method = stepper.name;
-    EXPECT_EQ(audit_method(numerics), "exact");
+    EXPECT_EQ(audit_method(numerics, Scene{}), "exact");
   }
 }
 

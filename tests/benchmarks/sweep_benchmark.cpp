@@ -32,7 +32,7 @@ Spec random_list() {
 
 void BareLoop(benchmark::State& state) {
   const Spec spec = random_list();
-  RollingIntegration rolling(integration_options(spec.numerics));
+  RollingIntegration rolling(integration_options(spec.numerics, spec.scene));
   std::vector<Outcome> outcomes(designs);
   for (auto _ : state) {
     for (std::size_t i = 0; i < designs; ++i) {

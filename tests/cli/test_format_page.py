@@ -49,11 +49,15 @@ def maps(tmp_path_factory):
     walled = "[scene]\nclear_height = 0.1\n[design]\nslope = { values = [0.3, 0.4] }\n"
     slipping = '[scene]\nfriction = "coulomb"\n[design]\npoints = "designs.csv"\n[numerics]\naudit = 1\n'
     named = [name for name, cells in rows("Fields").items() if cells[3].startswith("if named")]
+    of_robot = [name for name, cells in rows("Fields").items() if cells[3].startswith("pendulum, if named")]
+    driven = ('[scene]\nmodel = "pendulum"\n[design]\npoints = "designs.csv"\nmotor_torque = 1.0\n[output]\n'
+              f"fields = {json.dumps(['status', *of_robot])}\n")
     return [
         grid, joined, linked,
         sweep(folder, '[design]\npoints = "designs.csv"\n[numerics]\naudit = 1\n', name="list.h5"),
         sweep(folder, slipping, name="slipping.h5"),
         sweep(folder, walled, name="walled.h5"),
+        sweep(folder, driven, name="driven.h5"),
         sweep(
             folder,
             "[scene]\njumps = 2\nrunway = 20.0\n[design]\nslope = { values = [0.2, 0.3] }\n[gait]\nsettle = "

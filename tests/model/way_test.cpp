@@ -181,7 +181,7 @@ TEST_P(Ways, HaveTheDerivativesThatDifferencesShow) {
   std::vector<const Field*> fields;
   std::vector<std::vector<Design>> found;
   for (const Field& field : map_fields())
-    if (field.of_way || field.of_wall) {
+    if ((field.of_way || field.of_wall) && has(scene, field)) {
       fields.push_back(&field);
       found.push_back(gradient(designs, *number_of(field), scene));
     }

@@ -6,8 +6,10 @@
 
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "leapmap/errors.hpp"
+#include "model/model.hpp"
 #include "spec/designs.hpp"
 #include "spec/options.hpp"
 #include "support/temporary_folder.hpp"
@@ -132,18 +134,26 @@ TEST(Spec, ResolvedTextReadsBackAsTheSameSpec) {
 }
 
 TEST(Spec, ResolvedTextKeepsAnAxisOverAnyParameterAndOverAllOfThem) {
-  const std::string slips = "friction=coulomb";
-  std::vector<std::string> all{slips};
-  for (const Option* parameter : design_parameters()) {
-    const std::string axis = fmt::format("{}={{values=[0.25,0.5]}}", parameter->key);
-    all.push_back(axis);
-    for (const std::vector<std::string>& settings : {std::vector{slips, axis}, all}) {
-      const Spec spec = read_spec("", settings), again = parse_spec(resolved_text(spec), "text", {});
-      ASSERT_EQ(again.axes.size(), settings.size() - 1);
-      for (std::size_t i = 0; i < again.axes.size(); ++i) EXPECT_EQ(again.axes[i].key, spec.axes[i].key);
-      EXPECT_EQ(resolved_text(again), resolved_text(spec));
+  std::set<std::string_view> seen;
+  for (const Mechanism model : {Mechanism::hoop, Mechanism::pendulum}) {
+    const std::vector<std::string> scene{fmt::format("model={}", name_of(model)), "friction=coulomb"};
+    std::vector<std::string> all = scene;
+    for (const Option* parameter : design_parameters()) {
+      if (!has({.model = model, .friction = Friction::coulomb}, parameter->only_of)) continue;
+      seen.insert(parameter->key);
+      const std::string axis = fmt::format("{}={{values=[0.25,0.5]}}", parameter->key);
+      all.push_back(axis);
+      std::vector<std::string> one = scene;
+      one.push_back(axis);
+      for (const std::vector<std::string>& settings : {one, all}) {
+        const Spec spec = read_spec("", settings), again = parse_spec(resolved_text(spec), "text", {});
+        ASSERT_EQ(again.axes.size(), settings.size() - scene.size());
+        for (std::size_t i = 0; i < again.axes.size(); ++i) EXPECT_EQ(again.axes[i].key, spec.axes[i].key);
+        EXPECT_EQ(resolved_text(again), resolved_text(spec));
+      }
     }
   }
+  EXPECT_EQ(seen.size(), design_parameters().size());
 }
 
 TEST(Spec, MuKineticIsMuStaticUnlessGiven) {

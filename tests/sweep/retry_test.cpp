@@ -46,7 +46,7 @@ TEST(Retry, SettlesTheFailedByAnotherMethodAndLeavesTheRest) {
   const auto failed = std::ranges::count(before_status, static_cast<double>(Status::failed));
   ASSERT_GT(failed, 0);
 
-  spec.numerics = retry_numerics(spec.numerics, spec.numerics);
+  spec.numerics = retry_numerics(spec.numerics, spec.numerics, spec.scene);
   EXPECT_EQ(spec.numerics.method, "exact");
   const RetryReport report = retry_with(folder / "map.h5", spec, 2).value();
   EXPECT_EQ(report.retried, static_cast<std::size_t>(failed));
@@ -56,7 +56,7 @@ TEST(Retry, SettlesTheFailedByAnotherMethodAndLeavesTheRest) {
   const MapReader map(folder / "map.h5"), exact(folder / "exact.h5");
   for (const Field& field : map_fields()) {
     if (!map.has(std::string(field.name))) continue;
-    if (field.only_of || field.of_sequence || field.of_gait) continue;  // not of this map
+    if (!has(spec.scene, field) || field.of_sequence || field.of_gait) continue;  // not of this map
     const auto ours = map.read(std::string(field.name), all),
                theirs = exact.read(std::string(field.name), all);
     for (std::size_t i = 0; i < 600; ++i) {
@@ -94,15 +94,15 @@ TEST(Retry, StoppedItLeavesTheMapAsItWas) {
   Spec spec = sweep(folder / "map.h5", {"method=gsl-rk8pd", "max_steps=40"});
   const Tile all{{0, 0}, {20, 30}, 600};
   const auto before = MapReader(folder / "map.h5").read("status", all);
-  spec.numerics = retry_numerics(spec.numerics, spec.numerics);
+  spec.numerics = retry_numerics(spec.numerics, spec.numerics, spec.scene);
   EXPECT_FALSE(retry_with(folder / "map.h5", spec, 1, Locking::required, [] { return true; }));
   EXPECT_EQ(MapReader(folder / "map.h5").read("status", all), before);
 }
 
 TEST(Retry, TakesTheUsersOwnWayIfItIsAnother) {
   const Spec there = read_spec("", {}), other = read_spec("", {"tolerance=1e-13"});
-  EXPECT_EQ(retry_numerics(there.numerics, other.numerics).tolerance, 1e-13);
-  EXPECT_EQ(retry_numerics(there.numerics, there.numerics).method, "gsl-rk8pd");
+  EXPECT_EQ(retry_numerics(there.numerics, other.numerics, there.scene).tolerance, 1e-13);
+  EXPECT_EQ(retry_numerics(there.numerics, there.numerics, there.scene).method, "gsl-rk8pd");
 }
 
 }  // namespace
