@@ -35,14 +35,14 @@ def markers(trace, numbers, slope):
     f = trace.fields
     radius, arm = numbers["radius"], numbers["offset_ratio"] * numbers["radius"]
     centre = slope.place(f["x"], f["y"] + radius)
-    mass = centre - arm * (
-        np.sin(f["phi"])[:, None] * slope.downhill + np.cos(f["phi"])[:, None] * slope.away
-    )
+    angle = f.get("pendulum_angle", f["phi"])  # of a pendulum the hoop's own does not matter
+    mass = centre - arm * (np.sin(angle)[:, None] * slope.downhill + np.cos(angle)[:, None] * slope.away)
     return centre, mass
 
 
 def draw_plane(axis, slope, centre, radius):
-    ends = np.array([-2 * radius, (centre @ slope.downhill).max() + 2 * radius])
+    travel = centre @ slope.downhill
+    ends = np.array([min(travel.min(), 0.0) - 2 * radius, travel.max() + 2 * radius])
     plane = slope.place(ends, np.zeros(2))
     axis.plot(*plane.T, color=style.EDGE, lw=1.5)
     axis.set_aspect("equal")

@@ -368,7 +368,10 @@ def _check_numbers(m, name, values, dimensions):
     """Real numbers of that many dimensions, NaN allowed; of fields, of sizes that can be drawn."""
     if not isinstance(values, np.ndarray) or values.ndim != dimensions or values.dtype.kind not in "fiu":
         raise NotAMap(f"{m.path}: is damaged: {name} is no array of numbers over its axes")
-    if name in m.fields and values.dtype.kind == "f" and (np.abs(values[~np.isnan(values)]) > BEYOND).any():
+    known = values[~np.isnan(values)] if values.dtype.kind == "f" else values
+    if name in MAY_BE_INFINITE:
+        known = known[~np.isposinf(known)]
+    if name in m.fields and values.dtype.kind == "f" and (np.abs(known) > BEYOND).any():
         raise NotAMap(f"{m.path}: is damaged: {name} holds numbers beyond all bounds")
 
 

@@ -26,9 +26,14 @@ PUBLISHED = "#7b3294"
 def panels(trace):
     """What is drawn: (axis label, values)."""
     f = trace.fields
+    if "pendulum_angle" in f:
+        first = [("angle ψ [degrees]", np.degrees(f["pendulum_angle"])),
+                 ("motor's speed [rad/s]", f["pendulum_spin"] - f["spin"]),
+                 ("torque [(m + mₚ) g R]", f["motor_torque"])]
+    else:
+        first = [("angle φ [degrees]", np.degrees(f["phi"])), ("spin [rad/s]", f["spin"])]
     return [
-        ("angle φ [degrees]", np.degrees(f["phi"])),
-        ("spin [rad/s]", f["spin"]),
+        *first,
         ("normal force [weights]", f["normal_force"]),
         ("friction [weights]", f["friction"]),
         ("height y [mm]", 1e3 * f["y"]),
@@ -50,8 +55,10 @@ def chart(trace, paper):
     flight, sliding = trace.code("phase", "flight"), trace.code("phase", "sliding")
     times, heights, jumps = (trace.fields[name]
                              for name in ("candidate_time", "candidate_height", "candidate_is_jump"))
-    figure, axes = plt.subplots(5, 1, sharex=True, figsize=(6.6, 9.6), layout="constrained")
-    for axis, (label, values) in zip(axes, panels(trace)):
+    shown = panels(trace)
+    figure, axes = plt.subplots(len(shown), 1, sharex=True, figsize=(6.6, 1.92 * len(shown)),
+                                layout="constrained")
+    for axis, (label, values) in zip(axes, shown):
         # Forces end with contact: no line is drawn through the lift-off.
         force = "weights" in label
         axis.plot(t, np.where(flight, np.nan, values) if force else values, color="#1f4e79", linewidth=1.3)
@@ -148,11 +155,15 @@ def caption(trace, below=None):
     flight, design = trace.code("phase", "flight"), trace.numbers()
     shown = [
         f"slope {np.degrees(design['slope']):.4g}°", f"mₚ/m = {design['mass_ratio']:.4g}",
-        f"L/R = {design['offset_ratio']:.4g}", f"released at {np.degrees(design['release_angle']):.4g}°",
+        f"L/R = {design['offset_ratio']:.4g}",
+        f"released at {np.degrees(design['pendulum_angle' if trace.has_pendulum else 'release_angle']):.4g}°",
         f"spin {design['release_spin']:.4g} √(g/R)", trace.attributes["status"].replace("_", " ")
     ]
     if design.get("drive_torque"):
         shown.insert(-1, f"τ = {design['drive_torque']:.4g}")
+    if trace.has_pendulum:
+        law = trace.spec()["design"]["motor_law"].replace("_", " ")
+        shown.insert(-1, f"torque {design['motor_torque']:.4g}, no load {design['no_load_speed']:.4g}, {law}")
     if trace.slips:
         kinetic = design.get("mu_kinetic", design["mu_static"])
         shown[-1:] = [
@@ -161,6 +172,8 @@ def caption(trace, below=None):
             f"restitution {design['restitution']:.4g}", shown[-1]
         ]
         below = below or "Coulomb friction: sliding shaded orange, flight blue"
+    elif trace.has_pendulum:
+        below = below or "rolling without slip, then flight, shaded"
     else:
         below = below or "rolling (10)-(12), then flight (13), shaded" if flight.any(
         ) else "rolling (10)-(12)"

@@ -54,7 +54,8 @@ struct AuditDifference {
   double height = 0.0, time = 0.0, motion = 0.0;
 };
 
-/// The method that audits another: exact audits integration, integration by gsl-rk8pd at 1e-13 audits exact.
+/// The method that audits another: exact audits integration, integration by gsl-rk8pd at 1e-13 audits exact;
+/// of a model that is integrated gsl-rkck audits gsl-rk8pd, and gsl-rk8pd any other stepper.
 std::string audit_method(const Numerics& numerics, const Scene& scene);
 
 /// What the spec's audit compares with: that method, or "proof".

@@ -65,14 +65,19 @@ std::string verdict(const Motion& motion, const Spec& spec) {
                          eccentricity < rounding ? ": its centre of mass is on the axis" : "");
     case Status::stalled:
       if (scene.model == Mechanism::pendulum)
-        return fmt::format("It neither jumps nor comes to the runway's end within patience = {} sqrt(R/g).",
-                           scene.patience);
+        return fmt::format(
+            "It rests or rocks indefinitely, or neither jumps nor comes to the runway's end within "
+            "patience = {} sqrt(R/g).",
+            scene.patience);
       return resists ? "It is at rest: slope and motor push less than its resisting torque."
                      : "It is trapped: it rocks between two turning points indefinitely, or rests in an "
                        "equilibrium.";
     case Status::airborne_at_release:
       return "The normal force at the release is not positive: it is airborne from the start.";
     case Status::indeterminate:
+      if (scene.model == Mechanism::pendulum &&
+          spec.design.mass_ratio * spec.design.offset_ratio * spec.design.inertia_factor == 0.0)
+        return "A pendulum without mass or length, or a hoop without inertia, has no equation of motion.";
       return "The rigid-body equations have no solution or two: Painleve's paradox while sliding, or a motor "
              "that alone would lift the hoop and idles in flight.";
     default:
@@ -228,7 +233,10 @@ Json json_of(const Spec& spec, const Motion& motion, const Outcome& checked) {
   for (const Field* field : fields_of(scene))
     json[std::string(field->name)] = json_of(*field, motion.outcome);
   if (scene.model != Mechanism::hoop)
-    json["scene"].update({{"model", name_of(scene.model)}, {"motor_law", name_of(scene.motor_law)}});
+    json["scene"].update({{"model", name_of(scene.model)},
+                          {"motor_law", name_of(scene.motor_law)},
+                          {"motor_in_flight", scene.motor_in_flight},
+                          {"patience", scene.patience}});
   Json lift_offs = Json::array(), grazes = Json::array(), phases = Json::array();
   for (const Candidate& flown : motion.candidates)
     lift_offs.push_back({{"time", flown.t},
@@ -334,7 +342,10 @@ int run(const HopArguments& arguments) {
   const Motion check = tell(spec.design, second, 0.0);
   if (resolved_method(spec) == "exact") motion.grazes = check.grazes;
   if (!arguments.trace.empty()) {
-    std::vector<hdf5::Attribute> attributes = provenance(spec, trace_filetype, "Motion of one passive hoop");
+    std::vector<hdf5::Attribute> attributes =
+        provenance(spec, trace_filetype,
+                   spec.scene.model == Mechanism::hoop ? "Motion of one passive hoop"
+                                                       : "Motion of one hoop with a driven pendulum");
     attributes.emplace_back("status", std::string(name_of(motion.outcome.status)));
     if (!write_trace(behind_links(arguments.trace), motion, attributes, arguments.locking))
       tell_of_folder(arguments.trace);

@@ -79,7 +79,8 @@ void print_jump(const Spec& spec, const Outcome& jump) {
       say("The plane pushes with at most {} until lift-off.\n",
           with_mass(jump.max_normal_force, 4, "(m + m_p) g", "N", spec.scene));
     if (std::isfinite(jump.motor_max_torque))
-      say("The motor gives at most {} and {} at up to {:.4g} sqrt(g/R), and {} in all; efficiency {}.\n",
+      say("The motor gives at most {} and {} at up to {:.4g} sqrt(g/R), and {} until lift-off; efficiency "
+          "{}.\n",
           with_mass(jump.motor_max_torque, 4, "(m + m_p) g R", "N m", spec.scene),
           with_mass(jump.motor_max_power + 0.0, 4, "(m + m_p) g sqrt(g R)", "W", spec.scene),
           jump.motor_max_spin, with_mass(jump.motor_energy, 4, "(m + m_p) g R", "J", spec.scene),

@@ -28,8 +28,11 @@ std::string lines_of(const Json& value) {
 
 Json design_json(const Spec& spec, const Design& design) {
   Json json = Json::object();
-  for (const Option* parameter : design_parameters(spec))
-    json[std::string(parameter->key)] = value_of(*parameter, design);
+  for (const Option* parameter : design_parameters(spec)) {
+    const double value = value_of(*parameter, design);
+    // JSON has no infinity, and null is what is not known.
+    json[std::string(parameter->key)] = std::isinf(value) ? Json("inf") : Json(value);
+  }
   return json;
 }
 

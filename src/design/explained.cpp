@@ -313,14 +313,14 @@ auto Explained::with_event_solver(bool derivatives, const F& f) const {
   return event_solvers_[derivatives ? 1 : 0].with(make, f);
 }
 
-/// Of a model without derivatives: by central differences, good to the square of the step, as the integration
-/// is to a thousandth of that.
+/// Of a model without derivatives: by central differences, good to some 1e-6. That is enough for steps
+/// towards the least sum of squares; where it lies does not depend on them.
 bool Explained::event_differences(std::span<const double> at, std::span<double> residuals,
                                   std::span<double> jacobian) const {
   if (!event_residuals(at, residuals, {})) return false;
   std::vector<double> moved(at.begin(), at.end()), below(residuals.size()), above(residuals.size());
   for (std::size_t k = 0; k < free_.size(); ++k) {
-    const double h = 1e-5 * std::max(1.0, std::abs(at[k]));
+    const double h = 1e-4 * std::max(1.0, std::abs(at[k]));
     const double low = std::max(at[k] - h, problem_.bounds[k].low),
                  high = std::min(at[k] + h, problem_.bounds[k].high);
     moved[k] = low;

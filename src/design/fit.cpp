@@ -31,8 +31,9 @@ void refuse_what_has_no_use(const Spec& spec) {
   if (!spec.scatter.spreads.empty()) refuse("[scatter]");
   if (!spec.points.empty() || !spec.list.columns.empty()) refuse("design.points");
   if (!spec.output.fields.empty() || !spec.output.gradients.empty()) refuse("[output]");
-  if (spec.numerics.method != "auto" && spec.numerics.method != "exact")
-    refuse("a method other than \"exact\"");
+  Numerics usual = spec.numerics;
+  usual.method = "auto";
+  if (resolved_method(spec) != resolved_method(usual, spec.scene)) refuse("a method other than \"exact\"");
 }
 
 /// Times of a film later than the landing of the last jump that the model follows.

@@ -117,7 +117,7 @@ struct Outcome {
   double motor_max_power = none;   ///< its largest power [(m + m_p) g sqrt(g R)]; below zero: it only brakes
   double motor_max_spin = none;    ///< largest spin of the hoop, or of a pendulum relative to it [sqrt(g/R)]
   double motor_max_torque = none;  ///< pendulum only: its largest torque, either way [(m + m_p) g R]
-  double efficiency = none;  ///< pendulum only: weight times height over motor_energy, if above 1e-9
+  double efficiency = none;        ///< pendulum only: weight times height over motor_energy, if above 1e-9
   // With Coulomb friction.
   std::uint64_t phase_sequence = 0;  ///< two bits a phase, the first lowest, up to 32; see Phase
   double slip_distance = none;       ///< slid until the jump, or the end [R]; NaN if the hoop rocks to rest

@@ -38,7 +38,9 @@ std::string shown(double value, std::string_view unit) {
 
 /// Whether a design may have that value in the scene, used or not.
 bool is_allowed(const Parameter& parameter, double value, double usual, const Scene& scene) {
-  if (!has(scene, parameter.only_of)) return is_usual(value, usual);
+  const auto* member = std::get_if<double Design::*>(&parameter.member);
+  if (!has(scene, parameter.only_of) || (member && is_unused_by_law(*member, scene)))
+    return is_usual(value, usual);
   return parameter.range.holds(value) || (std::isnan(value) && std::isnan(usual));
 }
 
@@ -116,6 +118,25 @@ void check_scene(const Scene& scene) {
                                  scene.jumps, most_jumps));
 }
 
+bool is_unused_by_law(double Design::*member, const Scene& scene) {
+  const MotorLaw law = scene.motor_law;
+  if (scene.model != Mechanism::pendulum) return false;
+  if (member == &Design::motor_target) return law == MotorLaw::constant;
+  if (member == &Design::motor_gain) return law != MotorLaw::speed && law != MotorLaw::angle;
+  return member == &Design::motor_damping && law != MotorLaw::angle;
+}
+
+std::string no_use_by_law(const Scene& scene) {
+  return fmt::format("has no effect with motor_law = \"{}\"", name_of(scene.motor_law));
+}
+
+std::string with_law(std::string_view parameter) {
+  return parameter == "motor_target"
+             ? "with motor_law = \"until_angle\", \"until_speed\", \"speed\" or \"angle\""
+         : parameter == "motor_gain" ? "with motor_law = \"speed\" or \"angle\""
+                                     : "with motor_law = \"angle\"";
+}
+
 void check_gain(const Design& design, const Scene& scene, std::string_view place) {
   if (has_gain(design, scene)) return;
   throw InputError(
@@ -131,9 +152,12 @@ bool is_allowed(const Design& design, const Scene& scene) {
 void check_design(const Design& design, const Scene& scene, std::string_view place) {
   const Parameter* refused = first_refused(design, scene);
   if (!refused) return check_gain(design, scene, place);
-  const double value = design.*std::get<double Design::*>(refused->member);
-  if (has(scene, refused->only_of)) refuse_range(place, *refused, value);
-  refuse_unused(place, *refused, value, scene);
+  const auto member = std::get<double Design::*>(refused->member);
+  const double value = design.*member;
+  if (!has(scene, refused->only_of)) refuse_unused(place, *refused, value, scene);
+  if (is_unused_by_law(member, scene))
+    refuse(place, *refused, value, no_use_by_law(scene), with_law(refused->name));
+  refuse_range(place, *refused, value);
 }
 
 }  // namespace leapmap

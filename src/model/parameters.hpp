@@ -87,6 +87,12 @@ bool is_allowed(const Design& design, const Scene& scene);
 /// message.
 void check_design(const Design& design, const Scene& scene, std::string_view place = {});
 
+/// Whether a parameter of a pendulum's motor has no effect with the scene's motor_law; what is wrong then,
+/// and which laws have it.
+bool is_unused_by_law(double Design::*member, const Scene& scene);
+std::string no_use_by_law(const Scene& scene);
+std::string with_law(std::string_view parameter);
+
 /// Throws InputError if the scene's motor_law is "angle" and the design's motor_gain is infinite.
 void check_gain(const Design& design, const Scene& scene, std::string_view place = {});
 

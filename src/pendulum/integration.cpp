@@ -45,6 +45,8 @@ PhaseIntegration::PhaseIntegration(const IntegrationOptions& options)
       integrator_(*options.stepper, options.control, {&right_hand_side, &jacobian, dimension, &system}) {}
 
 void PhaseIntegration::watch_motor() {
+  if (system.mode == ContactMode::rolls && system.motor.is_holding() && system.motor.speed_to_hold() == 0.0)
+    watches.insert(watches.end(), {Watch::stops_forwards, Watch::stops_backwards});
   if (!system.idles) system.motor.tell_events([&](MotorEvent event) { watches.push_back(watch_of(event)); });
 }
 
@@ -71,6 +73,10 @@ T PhaseIntegration::value(Watch watch, const Vector<T>& at) const {
       return pivot(system.robot, sincos_of(at[psi]), system.drag, system.drive(at).holds);
     case Watch::runway:
       return bounds.runway - abs(at[x]);
+    case Watch::stops_forwards:
+      return at[w];
+    case Watch::stops_backwards:
+      return -at[w];
     case Watch::height:
       return at[y];
     case Watch::climb:

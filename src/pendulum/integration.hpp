@@ -88,6 +88,8 @@ enum class Watch {
   slip,            ///< towards zero
   pivot,           ///< Painleve's edge
   runway,
+  stops_forwards,  ///< the hoop's spin, of a robot that is held together: it turns round
+  stops_backwards,
   height,
   climb,    ///< of a flight, up to its highest place
   descent,  ///< down to its lowest
@@ -100,6 +102,7 @@ enum class Watch {
 constexpr Watch watch_of(MotorEvent event) {
   return static_cast<Watch>(static_cast<int>(Watch::motor_target) + static_cast<int>(event));
 }
+static_assert(watch_of(MotorEvent::low_is_passed) == Watch::motor_low);
 constexpr bool is_of_motor(Watch watch) { return watch >= Watch::motor_target; }
 constexpr MotorEvent motor_event(Watch watch) {
   return static_cast<MotorEvent>(static_cast<int>(watch) - static_cast<int>(Watch::motor_target));
@@ -161,6 +164,7 @@ Followed PhaseIntegration::follow(double& time, Y& at, const Happens& happens) {
   const auto sampled = [&](std::size_t number, const Y& y) { return sample(watches[number], y); };
   const auto angle = [](const Y& y) { return y[psi]; };
   const double began = time;
+  if (!(began < bounds.patience)) return Followed::out_of_time;
   guarded_.begin(at, watches.size(), sampled);
   if (!integrator_.start(at, 0.1 / (1.0 + std::abs(at[u]) + std::abs(at[w])))) return Followed::failed;
   for (;;) {

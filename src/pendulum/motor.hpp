@@ -20,6 +20,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "leapmap/design.hpp"
@@ -52,7 +53,7 @@ class Motor {
         damping_(design.motor_damping) {}
 
   /// Finds the piece at a state. needed: the torque with which it would hold; at_speed: the speed to hold was
-  /// just reached.
+  /// just reached, as it counts as reached within some roundings.
   template <class Needed>
   void decide(const Turning<double>& at, bool at_speed, const Needed& needed) {
     if (is_until() && !brakes_ && until(at) <= 0.0) brakes_ = true;
@@ -61,8 +62,10 @@ class Motor {
       piece_ = wanted > high(at) ? Piece::high : wanted < low(at) ? Piece::low : Piece::regulated;
     } else if (holds()) {
       const double missing = speed_to_hold() - (at.u - at.w);
+      const double rounding = 64.0 * std::numeric_limits<double>::epsilon() *
+                              (std::abs(at.u) + std::abs(at.w) + std::abs(speed_to_hold()));
       piece_ = missing > 0.0 ? Piece::high : Piece::low;
-      if (at_speed || missing == 0.0) {
+      if (at_speed || std::abs(missing) <= rounding) {
         const double torque = needed();
         piece_ = torque > high(at) ? Piece::high : torque < low(at) ? Piece::low : Piece::held;
       }
@@ -71,8 +74,7 @@ class Motor {
     }
   }
 
-  /// What may end the piece, each of which then falls through zero. needed: the torque that it gives. Calls
-  /// tell(MotorEvent) of each.
+  /// Calls tell(MotorEvent) of each event that may end the piece; distance_to() then falls through zero.
   template <class Tell>
   void tell_events(const Tell& tell) const {
     if (is_until() && !brakes_) return tell(MotorEvent::reaches_target);

@@ -5,23 +5,27 @@
 
 #include "hoop/units.hpp"
 #include "pendulum/solver.hpp"
+#include "support/stop.hpp"
 
 namespace leapmap::pendulum {
 
-/// The normal force that would be left if the motor gave no torque and nothing slid.
+/// n0 without the motor's torque: above zero contact would be consistent.
 double Solver::held_down() const {
   const Robot& robot = contact_.system.robot;
   return robot.cos_slope + robot.rho * sincos_of(at_[psi]).cos * at_[u] * at_[u];
+}
+
+/// Whether n0 is not above zero.
+bool Solver::lifts_off() const {
+  const System& system = contact_.system;
+  return free_normal_force(system.robot, sincos_of(at_[psi]), at_[u], system.drive(at_)) <= 0.0;
 }
 
 /// How the contact goes on at at_, and with it the motor: at v != 0 it slides, at v = 0 the forces decide.
 auto Solver::next_contact(Leaving leaving) -> Next {
   System& system = contact_.system;
   const double slip = at_[vx] - at_[w];
-  const auto leaves = [&] {
-    return free_normal_force(system.robot, sincos_of(at_[psi]), at_[u], system.drive(at_)) <= 0.0;
-  };
-  const bool would_leave = leaving != Leaving::never && leaves();
+  const bool would_leave = leaving != Leaving::never && lifts_off();
   if (would_leave && (leaving == Leaving::always || slip != 0.0)) return Next::leaves;
   if (slip != 0.0) return slip > 0.0 ? Next::slides_forwards : Next::slides_backwards;
   system.mode = ContactMode::rolls;
@@ -33,6 +37,14 @@ auto Solver::next_contact(Leaving leaving) -> Next {
   return f.friction > 0.0 ? Next::slides_backwards : Next::slides_forwards;
 }
 
+/// True: it has ended, as it goes through more phases than a design may.
+bool Solver::has_too_many_phases() {
+  if (sequence_.count() < most_phases) return false;
+  const bool rebounds = friction_.restitution > 0.0 && friction_.rest_speed < 1e-12;
+  ended(Status::failed, rebounds ? endless_rebounds : too_many);
+  return true;
+}
+
 /// Puts the contact into its next phase; a phase that merely goes on with another torque is none. False: it
 /// has ended.
 bool Solver::begin_contact(Next next) {
@@ -41,16 +53,11 @@ bool Solver::begin_contact(Next next) {
   const ContactMode mode = next == Next::rolls ? ContactMode::rolls : ContactMode::slides;
   const bool goes_on = is_begun_ && system.mode == mode && system.direction == direction;
   system.mode = mode, system.direction = direction, system.drag = -friction_.mu_kinetic * direction;
-  if (system.motor.is_holding()) decide_motor(true);  // by another torque
+  if (!goes_on) decide_motor(system.motor.is_holding());  // another phase may take another torque
   const bool has_answer = mode == ContactMode::rolls || pivot(system.robot, sincos_of(at_[psi]), system.drag,
                                                               system.motor.is_holding()) > 0.0;
   if (goes_on && has_answer) return true;
-  if (sequence_.count() >= most_phases) {
-    ended(Status::failed, friction_.restitution > 0.0 && friction_.rest_speed < 1e-12
-                              ? endless_rebounds
-                              : "more phases than a design may go through");
-    return false;
-  }
+  if (!goes_on && has_too_many_phases()) return false;
   is_begun_ = true;
   const Phase phase = mode == ContactMode::rolls ? Phase::rolling : Phase::sliding;
   if (!goes_on) {
@@ -71,27 +78,29 @@ auto Solver::follow_contact() -> Next {
   contact_.watch_motor();
   const Y from = at_;
   Watch ended_by{};
+  turns_ = 0;
+  if (++pieces_ > most_pieces) {
+    ended(Status::failed, too_many);
+    return {};
+  }
   const Followed followed = contact_.follow(time_, at_, [&](Watch watch, double, const Y&) {
     ended_by = watch;
-    return true;
+    const bool turns = watch == Watch::stops_forwards || watch == Watch::stops_backwards;
+    return !turns || rocks(watch);
   });
   if (system.mode == ContactMode::slides) slipped_ += std::abs((at_[x] - from[x]) - (at_[phi] - from[phi]));
   if (followed == Followed::stopped) return after(ended_by);
-  followed == Followed::failed ? ended(Status::failed, "a phase could not be solved to the tolerance")
-                               : ended(Status::stalled);
+  followed == Followed::failed ? ended(Status::failed, no_phase) : ended(Status::stalled);
   return {};
 }
 
 auto Solver::after(Watch watch) -> Next {
   System& system = contact_.system;
-  const auto lifts = [&] {
-    return free_normal_force(system.robot, sincos_of(at_[psi]), at_[u], system.drive(at_)) <= 0.0;
-  };
   switch (watch) {
     case Watch::hold_forwards:
-      return lifts() ? Next::leaves : Next::slides_forwards;
+      return lifts_off() ? Next::leaves : Next::slides_forwards;
     case Watch::hold_backwards:
-      return lifts() ? Next::leaves : Next::slides_backwards;
+      return lifts_off() ? Next::leaves : Next::slides_backwards;
     case Watch::normal_force:
     case Watch::lift:
       return Next::leaves;
@@ -101,6 +110,10 @@ auto Solver::after(Watch watch) -> Next {
     case Watch::runway:
       ended(Status::no_jump);
       return {};
+    case Watch::stops_forwards:
+    case Watch::stops_backwards:
+      ended(Status::stalled);
+      return {};
     case Watch::pivot:
       ended(Status::indeterminate);
       return {};
@@ -109,11 +122,7 @@ auto Solver::after(Watch watch) -> Next {
   }
   const MotorEvent event = motor_event(watch);
   const bool at_speed = event == MotorEvent::reaches_speed;
-  if (at_speed) {
-    const double slip = at_[vx] - at_[w];
-    at_[u] = at_[w] + system.motor.speed_to_hold();
-    at_[vx] = at_[w] + slip;
-  }
+  if (at_speed) at_[u] = at_[w] + system.motor.speed_to_hold();
   if (!system.motor.pass(event)) decide_motor(at_speed);
   return next_contact(Leaving::unless_it_sticks);
 }
@@ -126,12 +135,18 @@ auto Solver::fly_and_land() -> Next {
     ended(Status::indeterminate);
     return {};
   }
+  if (has_too_many_phases()) return {};
   sequence_.append(Phase::flight);
   is_begun_ = false;
   if (observer_->phase) observer_->phase(Phase::flight, 0, time_, at_);
   Flight<double> flight;
   if (!fly(time_, at_, flight)) {
-    ended(Status::failed, "a phase could not be solved to the tolerance");
+    ended(Status::failed, no_phase);
+    return {};
+  }
+  // In contact the motor cannot hold the two together, and in flight, where it can, the robot would sink.
+  if (flight.flight_time == 0.0 && flight_.system.motor.is_holding() && !contact_.system.motor.is_holding()) {
+    ended(Status::indeterminate);
     return {};
   }
   const Y from = at_;
@@ -144,6 +159,10 @@ auto Solver::fly_and_land() -> Next {
     return {};
   }
   time_ += flight.flight_time;
+  if (!(time_ < contact_.bounds.patience)) {
+    ended(Status::stalled);
+    return {};
+  }
   if (!(std::abs(landed_[x]) < contact_.bounds.runway)) {
     ended(Status::no_jump);
     return {};
@@ -162,9 +181,10 @@ void Solver::solve_sliding() {
   const bool from_rest = is_at_rest();
   show_release();
   Next next = next_contact(Leaving::unless_it_sticks);
-  if (from_rest && next == Next::rolls) return void(ended(Status::stalled));
-  if (next == Next::leaves && !(held_down() > 0.0)) return void(ended(Status::airborne_at_release));
+  if (from_rest && next == Next::rolls) return ended(Status::stalled);
+  if (next == Next::leaves && !(held_down() > 0.0)) return ended(Status::airborne_at_release);
   while (!over_) {
+    throw_if_stopped();
     if (next == Next::leaves) {
       next = fly_and_land();
     } else if (begin_contact(next)) {

@@ -13,9 +13,10 @@
 namespace leapmap::pendulum {
 namespace {
 
-constexpr const char* no_phase = "a phase could not be solved to the tolerance";
-constexpr const char* too_many = "more phases than a design may go through";
-constexpr int most_pieces = 2'000;
+/// A dip that is none but for roundings.
+void forget_rounding(Flight<double>& flight) {
+  if (flight.dip > -1e-14) flight.dip = 0.0;
+}
 
 /// Where a robot is some time after a lift-off, under a steady torque.
 Y flown(const Robot& r, const Y& at, double torque, double t) {
@@ -46,7 +47,7 @@ Y released(const Design& design) {
 void Solver::begin(const Design& design, const Scene& scene) {
   scene_ = &scene;
   outcome_ = {}, sequence_ = {}, over_ = is_begun_ = false;
-  time_ = slipped_ = 0.0, contact_.steps = flight_.steps = 0;
+  time_ = slipped_ = 0.0, pieces_ = 0, contact_.steps = flight_.steps = 0;
   at_ = released(design);
   friction_ = contact_of<double>(design, scene);
   contact_.system = {.robot = reduce(design), .motor = Motor(design, scene)};
@@ -59,18 +60,19 @@ void Solver::begin(const Design& design, const Scene& scene) {
 Outcome Solver::solve(const Design& design, const Scene& scene, const Observer& observer) {
   observer_ = &observer;
   begin(design, scene);
-  if (!contact_.system.robot.is_sound()) return ended(Status::indeterminate);
-  scene.friction == Friction::coulomb ? solve_sliding() : solve_sticking();
+  if (!contact_.system.robot.is_sound())
+    ended(Status::indeterminate);
+  else
+    scene.friction == Friction::coulomb ? solve_sliding() : solve_sticking();
   to_seconds(outcome_, time_unit(scene));
   return outcome_;
 }
 
 /// What is not known of a design that has no answer is not told.
-Outcome Solver::ended(Status status, const char* reason) {
+void Solver::ended(Status status, const char* reason) {
   if (status == Status::failed || status == Status::indeterminate) outcome_ = {};
   outcome_.status = status, outcome_.failure = reason;
   over_ = true;
-  return outcome_;
 }
 
 /// The motor's piece at this state, for the contact as it is.
@@ -90,42 +92,74 @@ void Solver::show_release() const {
                      }});
 }
 
+/// Whether all moments cancel, but for roundings of their own size.
 bool Solver::is_at_rest() const {
   if (at_[w] != 0.0 || at_[u] != 0.0 || at_[vx] != 0.0) return false;
-  const Forces<double> f = contact_.system.forces(at_);
-  const double nothing = 4.0 * std::numeric_limits<double>::epsilon();
-  const double moments = 1.0 + contact_.system.robot.rho;
-  return f.normal > 0.0 && std::abs(f.hoop) <= nothing * moments && std::abs(f.pendulum) <= nothing * moments;
+  const System& system = contact_.system;
+  const Robot& r = system.robot;
+  const SinCos<double> angle = sincos_of(at_[psi]);
+  const Drive<double> drive = system.drive(at_);
+  const double slope = r.sin_slope, weight = -r.rho * (r.sin_slope * angle.cos + r.cos_slope * angle.sin);
+  const auto cancel = [](double a, double b, double size) {
+    return std::abs(a + b) <= 4.0 * std::numeric_limits<double>::epsilon() * size;
+  };
+  const double torque = drive.torque;
+  const bool rests = drive.holds ? cancel(slope, weight, std::abs(slope) + r.rho)
+                                 : cancel(slope, -torque, std::abs(slope) + std::abs(torque)) &&
+                                       cancel(torque, weight, std::abs(torque) + r.rho);
+  return rests && system.forces(at_).normal > 0.0;
 }
 
-/// Whether contact would hold here if the motor gave no torque.
-bool Solver::is_lifted_by_motor() const { return contact_.system.forces(at_, Drive<double>{}).normal > 0.0; }
+/// Counts how often a robot that is held together turns round. One that rolls keeps its energy: when it has
+/// turned at one end, at the other and at the first again, it has gone through all there is, both ways.
+bool Solver::rocks(Watch watch) {
+  constexpr int all = 3;
+  return (watch == Watch::stops_forwards || watch == Watch::stops_backwards) && ++turns_ == all;
+}
+
+/// Whether the plane would push here without slip if the motor gave no torque.
+bool Solver::is_held_down_without_motor() const {
+  return contact_.system.forces(at_, Drive<double>{}).normal > 0.0;
+}
 
 void Solver::solve_sticking() {
   System& system = contact_.system;
   decide_motor(false);
-  if (is_at_rest()) return void(ended(Status::stalled));
+  if (is_at_rest()) return ended(Status::stalled);
   show_release();
   if (observer_->phase) observer_->phase(Phase::rolling, 0, 0.0, at_);
   if (!(system.forces(at_).normal > 0.0)) {
-    if (!is_lifted_by_motor()) return void(ended(Status::airborne_at_release));
+    if (!is_held_down_without_motor()) return ended(Status::airborne_at_release);
     if (take_lift_off(0.0, at_)) return;
   }
   for (int piece = 0; piece < most_pieces; ++piece) {
     contact_.watches = {Watch::normal_force, Watch::runway};
     contact_.watch_motor();
+    turns_ = 0;
     Watch ended_by{};
     const Followed followed = contact_.follow(time_, at_, [&](Watch watch, double time, const Y& at) {
       ended_by = watch;
-      return watch != Watch::normal_force || take_lift_off(time, at);
+      if (watch == Watch::normal_force) return take_lift_off(time, at);
+      return watch == Watch::runway || is_of_motor(watch) || rocks(watch);
     });
     if (over_) return;
-    if (followed == Followed::out_of_time) return void(ended(Status::stalled));
-    if (followed == Followed::failed) return void(ended(Status::failed, no_phase));
-    if (ended_by == Watch::runway) return void(ended(Status::no_jump));
+    at_ = in_contact(at_);
+    if (followed == Followed::failed) return ended(Status::failed, no_phase);
+    const bool repeats = followed == Followed::stopped && ended_by != Watch::runway && !is_of_motor(ended_by);
+    if (followed == Followed::out_of_time || repeats) return ended(Status::stalled);
+    if (ended_by == Watch::runway) return ended(Status::no_jump);
     if (take_motor_event(ended_by)) return;
+    if (is_at_rest()) return ended(Status::stalled);
   }
   ended(Status::failed, too_many);
+}
+
+/// A state in contact without the roundings that some steppers leave: it is on the plane, and a rolling one
+/// does not slip.
+Y Solver::in_contact(Y at) const {
+  at[y] = at[vy] = 0.0;
+  if (contact_.system.mode == ContactMode::rolls) at[vx] = at[w];
+  return at;
 }
 
 /// Goes on to the motor's next piece. A normal force that falls to zero or below with it is a lift-off. True:
@@ -141,7 +175,8 @@ bool Solver::take_motor_event(Watch watch) {
 }
 
 /// Looks at a lift-off without slip. True: it ends the design, by a jump or a failure.
-bool Solver::take_lift_off(double time, const Y& at) {
+bool Solver::take_lift_off(double time, const Y& from) {
+  const Y at = in_contact(from);
   Flight<double> flight;
   if (!fly(time, at, flight)) {
     ended(Status::failed, no_phase);
@@ -180,6 +215,7 @@ void Solver::fly_steadily(double time, const Y& at, double torque, Flight<double
   if (flight_.observer) flight_.observer({system, time, flight.flight_time, at, state_at});
   state_at(flight.flight_time, landed_);
   landed_[y] = 0.0;
+  forget_rounding(flight);
 }
 
 /// Follows a flight to its landing, which landed_ is just before. False: the method fails.
@@ -192,6 +228,7 @@ bool Solver::fly(double time, const Y& at, Flight<double>& flight) {
   flight_.system = contact_.system;
   System& system = flight_.system;
   system.mode = ContactMode::flies, system.idles = !scene_->motor_in_flight;
+  if (!system.idles) system.motor.decide(turning(at), false, [] { return 0.0; });
   if (const auto torque = system.idles ? 0.0 : system.motor.steady_torque()) {
     fly_steadily(time, at, *torque, flight);
     return true;
@@ -222,6 +259,7 @@ bool Solver::fly(double time, const Y& at, Flight<double>& flight) {
   }
   landed_[y] = 0.0;
   flight.height = 0.5 * best, flight.flight_time = time - began;
+  forget_rounding(flight);
   return true;
 }
 

@@ -21,6 +21,13 @@ struct Observer {
   StepObserver contact_step, flight_step;
 };
 
+/// Why designs fail.
+inline constexpr const char* no_phase = "a phase could not be solved to the tolerance";
+inline constexpr const char* too_many = "more phases than a design may go through";
+
+/// Of a motor's torque in one phase, or of a contact.
+inline constexpr int most_pieces = 2'000;
+
 /// The state at release.
 Y released(const Design& design);
 
@@ -34,15 +41,17 @@ class Solver {
 
  private:
   void begin(const Design& design, const Scene& scene);
-  Outcome ended(Status status, const char* reason = nullptr);
+  void ended(Status status, const char* reason = nullptr);
   void decide_motor(bool at_speed);
   void show_release() const;
   bool is_at_rest() const;
-  bool is_lifted_by_motor() const;
+  bool rocks(Watch watch);
+  bool is_held_down_without_motor() const;
 
   void solve_sticking();
   bool take_motor_event(Watch watch);
-  bool take_lift_off(double time, const Y& at);
+  bool take_lift_off(double time, const Y& from);
+  Y in_contact(Y at) const;
 
   enum class Next { rolls, slides_forwards, slides_backwards, leaves };
   void solve_sliding();
@@ -52,6 +61,8 @@ class Solver {
   Next after(Watch watch);
   Next fly_and_land();
   double held_down() const;
+  bool lifts_off() const;
+  bool has_too_many_phases();
 
   bool fly(double time, const Y& at, Flight<double>& flight);
   void fly_steadily(double time, const Y& at, double torque, Flight<double>& flight);
@@ -65,6 +76,8 @@ class Solver {
   Contact<double> friction_{};
   Outcome outcome_;
   PhaseSequence sequence_;
+  int pieces_ = 0;  ///< that the contact has gone through
+  int turns_ = 0;   ///< of the piece that is followed
   bool over_ = false;
   bool stays_held_ = false;  ///< by the motor, through the last landing
   bool is_begun_ = false;    ///< a contact, whose phase may go on

@@ -120,7 +120,7 @@ void Referee::meet(const Mode& mode, double end) {
 }
 
 Outcome Referee::solve(const Design& design) {
-  if (scene_.model == Mechanism::pendulum) 
+  if (scene_.model == Mechanism::pendulum)
     return solve_robot(design, scene_, tolerance_, most_steps_, meets_forces);
   system_.body = body_of(design, scene_);
   const double w = design.release_spin / second_;

@@ -110,7 +110,8 @@ class Run {
     } else if (seeks_speed()) {
       const double missing = sought() - (at_.swing - at_.spin);
       mode_.motor = missing > 0.0 ? Motored::up : Motored::down;
-      if (!at_speed && missing != 0.0) return;
+      const double near = 2.0 * rounding * (std::abs(at_.swing) + std::abs(at_.spin) + std::abs(sought()));
+      if (!at_speed && std::abs(missing) > near) return;
       const double torque = needed(at_);
       mode_.motor = torque > range.up ? Motored::up : torque < range.down ? Motored::down : Motored::holds;
     } else {
@@ -182,6 +183,7 @@ class Run {
     };
     const Y start = state_of(at_);
     const double began = time_;
+    if (!(began < ends)) return -2;
     GuardedSteps<9> steps;
     steps.begin(start, guards.size(), sample);
     if (!integrator.start(start, 0.01 / (1.0 / second_ + std::abs(at_.swing)))) return -1;
@@ -202,7 +204,9 @@ class Run {
           motor[number - contact.size()].passes();
           return static_cast<int>(number);
         }
-        if (happens(static_cast<int>(number))) return static_cast<int>(number);
+        if (!happens(static_cast<int>(number))) continue;
+        if (meets_forces_ && &integrator == &aloft_) meet(integrator, event.tau);
+        return static_cast<int>(number);
       }
       if (meets_forces_) meet(integrator, std::min(step.h, ends - (began + step.t0)));
       const double left = ends - (began + step.t0);
@@ -269,7 +273,10 @@ class Run {
     const bool braked = brakes_;
     const Look way = way_;
     mode_.kind = RobotMode::flies;
-    if (!scene_.motor_in_flight) mode_.motor = Motored::idles;
+    if (scene_.motor_in_flight)
+      decide_motor(false);
+    else
+      mode_.motor = Motored::idles;
     Flown flown;
     const double R = scene_.radius, arm = robot_.m_p * robot_.L / (robot_.m + robot_.m_p);
     const std::vector<Guard> guards{
@@ -358,11 +365,17 @@ class Run {
     return outcome_;
   }
 
+  /// Whether every body's moments cancel, but for roundings of their own size.
   bool rests() const {
+    if (at_.spin != 0.0 || at_.swing != 0.0) return false;
     const RobotForces a = forces_of(robot_, mode_, at_);
-    const double least = rounding * scene_.gravity / scene_.radius;
-    return at_.spin == 0.0 && at_.swing == 0.0 && a.normal > 0.0 && std::abs(a.phi) <= least &&
-           std::abs(a.psi) <= least;
+    const double unit = robot_.weight() * robot_.R;
+    const double arm = robot_.m_p * robot_.g * robot_.L, push = unit * std::abs(std::sin(robot_.slope));
+    const double hoop = robot_.I + (robot_.m + robot_.m_p) * robot_.R * robot_.R,
+                 pendulum = robot_.I_p + robot_.m_p * robot_.L * robot_.L;
+    const double size = rounding * (arm + push + std::abs(a.torque));
+    return a.normal > 0.0 && std::abs(a.phi) * hoop <= size * (1.0 + hoop / pendulum) &&
+           std::abs(a.psi) * pendulum <= size * (1.0 + hoop / pendulum);
   }
   double runway_left(const RobotMotion& at) const {
     return 2.0 * std::numbers::pi * scene_.runway * scene_.radius - std::abs(at.x);
@@ -459,8 +472,9 @@ class Run {
                                      << (2 * phases_);
         ++phases_;
       }
+      const bool is_new = next != before;
       before = next;
-      next = next == Next::flies ? fly_and_land() : touch(next);
+      next = next == Next::flies ? fly_and_land() : touch(next, is_new);
     }
     return finish(next == Next::ended ? end_ : Status::failed);
   }
@@ -470,11 +484,11 @@ class Run {
     return Next::ended;
   }
 
-  Next touch(Next now) {
+  Next touch(Next now, bool is_new) {
     const double sign = now == Next::slides_forwards ? 1.0 : -1.0;
     mode_.kind = now == Next::rolls ? RobotMode::rolls : RobotMode::slides;
     mode_.drag = now == Next::rolls ? 0.0 : -sign * mu_kinetic_;
-    if (mode_.motor == Motored::holds) decide_motor(true);
+    if (is_new) decide_motor(mode_.motor == Motored::holds);
     std::vector<Guard> guards{[&](const RobotMotion& at) { return runway_left(at); }};
     if (now == Next::rolls) {
       guards.push_back([&](const RobotMotion& at) { return hold(at, -1.0); });
@@ -514,8 +528,11 @@ class Run {
       return end(Status::indeterminate);
     const Flown flown = fly();
     if (flown.failed) return end(Status::failed);
+    if (flown.landing == 0.0 && flown.holds && mode_.motor != Motored::holds)
+      return end(Status::indeterminate);
     if (count_lift_off(flown)) return end(Status::jumped);
     time_ += flown.landing;
+    if (!(time_ < patience())) return end(Status::stalled);
     at_ = flown.before, brakes_ = after_flight_, way_ = flown.way;
     if (!(runway_left(at_) > 0.0)) return end(Status::no_jump);
     stays_held_ = mode_.motor == Motored::holds;

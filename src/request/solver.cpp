@@ -230,6 +230,8 @@ ScatterSolver scatter_solver_of(const Request& request, std::shared_ptr<const So
 
 Motion tell(const Design& design, const Request& request, double interval) {
   const Model& model = model_of(request.scene);
+  if (request.scene.jumps > 1 && !is_exact(request))
+    need(model, &Model::integrated_jumps, "jumps that begin at a landing");
   Motion motion = is_exact(request) ? need(model, &Model::tell_exactly, semi_analytic)(
                                           design, request.scene, request.numerics.tolerance, interval)
                                     : need(model, &Model::tell_by_integration, integrator)(

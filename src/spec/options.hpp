@@ -80,6 +80,11 @@ std::vector<const Option*> design_parameters(const Spec& spec);
 inline double Design::*member_of(const Option& parameter) {
   return std::get<ParameterSlot>(parameter.slot).member;
 }
+/// Whether a parameter has no effect with the scene's motor_law.
+inline bool is_unused_by_law(const Option& option, const Scene& scene) {
+  const auto* slot = std::get_if<ParameterSlot>(&option.slot);
+  return slot && is_unused_by_law(slot->member, scene);
+}
 /// The same of the parameter of that name.
 double Design::*member_of(std::string_view parameter);
 

@@ -195,6 +195,8 @@ void override_with(std::vector<Entry>& entries, const Entry& entry) {
 
 /// Whether a key says no more than its default.
 bool is_default(const Option& option, const Entry& entry) {
+  if (const auto* word = std::get_if<WordSlot>(&option.slot))
+    return entry.node->value<std::string>() == std::string(word->word(Scene{}));
   const auto value = entry.node->value<double>();
   const auto* of_scene = std::get_if<SceneSlot>(&option.slot);
   const auto* of_design = std::get_if<ParameterSlot>(&option.slot);
@@ -202,14 +204,16 @@ bool is_default(const Option& option, const Entry& entry) {
   return is_usual(*value, of_scene ? Scene{}.*of_scene->member : Design{}.*of_design->member);
 }
 
-/// Puts the default in place of a number of the file, so that models can be compared on one file. False: it
-/// is no number of the file.
+/// Puts the default in place of a number or word of the file, so that models can be compared on one file.
+/// False: it is no number of the file.
 bool leave_out(const Entry& entry, Spec& spec) {
   const bool of_file = entry.place != command_line && !entry.node->is_table();
   if (const auto* of_design = std::get_if<ParameterSlot>(&entry.option->slot); of_design && of_file)
     spec.design.*of_design->member = Design{}.*of_design->member;
   else if (const auto* of_scene = std::get_if<SceneSlot>(&entry.option->slot); of_scene && of_file)
     spec.scene.*of_scene->member = Scene{}.*of_scene->member;
+  else if (const auto* word = std::get_if<WordSlot>(&entry.option->slot); word && of_file)
+    word->set(spec.scene, word->word(Scene{}));
   else
     return false;
   return true;
@@ -222,17 +226,22 @@ void refuse_what_has_no_use(const std::vector<Entry>& entries, Spec& spec) {
     return entry.place == command_line && word && word->picks_model;
   });
   std::vector<std::string_view> left_out;
+  std::string why;
   for (const Entry& entry : entries) {
-    if (has(spec.scene, entry.option->only_of) ||
-        (entry.place != command_line && is_default(*entry.option, entry)))
+    const Option& option = *entry.option;
+    if (is_unused_by_law(option, spec.scene) && !entry.node->is_table() && !is_default(option, entry))
+      refuse(entry, no_use_by_law(spec.scene), with_law(entry.key));
+    if (has(spec.scene, option.only_of) || (entry.place != command_line && is_default(option, entry)))
       continue;
     if (!chosen || !leave_out(entry, spec))
-      refuse(entry, no_use(spec.scene, entry.option->only_of), with_model(entry.option->only_of));
+      refuse(entry, no_use(spec.scene, option.only_of), with_model(option.only_of));
+    why = no_use(spec.scene, option.only_of);
     left_out.push_back(entry.key);
   }
+  constexpr std::string_view begins = "has no effect because ";
   if (!left_out.empty())
-    spec.notes.push_back(fmt::format("{}: not used, because the contact {}: {}", origin_of(spec),
-                                     model_of(spec.scene).meaning, fmt::join(left_out, ", ")));
+    spec.notes.push_back(fmt::format("{}: not used, because {}: {}", origin_of(spec),
+                                     why.substr(begins.size()), fmt::join(left_out, ", ")));
 }
 
 /// What [hoop] determines is given once.
@@ -446,6 +455,7 @@ void refuse_contradictions(const std::vector<Entry>& entries, const Spec& spec) 
       refuse(entry, fmt::format("method \"{}\" takes no steps", spec.numerics.method),
              "with method = \"gsl-...\"");
   }
+  if (spec.hoop && spec.scene.model != Mechanism::hoop) refuse_drawing(spec);
   if (std::ranges::find(spec.axes, "motor_gain", &Axis::key) == spec.axes.end() && spec.points.empty())
     check_gain(spec.design, spec.scene, origin_of(spec));
   if (!spec.points.empty() && !spec.axes.empty())

@@ -30,6 +30,9 @@ std::string text_of(const Goal& goal);
 /// Whether maps hold a field: whether output.fields names it or, where that names none, it is stored then.
 bool stores(const Output& output, const Field& field);
 
+/// Throws InputError: [hoop] beside a model that has no drawing.
+[[noreturn]] void refuse_drawing(const Spec& spec);
+
 /// The name of the method that numerics.method stands for: "auto" is settled here. Rolling conserves energy
 /// and sliding reduces to quadratures, so that hoops are solved exactly; a pendulum is integrated.
 std::string resolved_method(const Numerics& numerics, const Scene& scene);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "hoop/body.hpp"
 #include "leapmap/errors.hpp"
@@ -10,6 +11,7 @@
 #include "map/schema.hpp"
 #include "model/model.hpp"
 #include "model/variable.hpp"
+#include "numerics/gsl_integrator.hpp"
 #include "spec/options.hpp"
 #include "spec/scatter_check.hpp"
 #include "spec/spacing.hpp"
@@ -49,6 +51,14 @@ void check_values(const Spec& spec, const std::vector<Axis>& axes) {
       refuse(spec, axis.key, "is between bounds: 'count' is missing",
              "{ from, to, count }, or leapmap design, which chooses between bounds");
     for (const double value : axis.values) check_number(spec, *option, value);
+    if (is_unused_by_law(*option, spec.scene))
+      refuse(spec, axis.key, no_use_by_law(spec.scene), with_law(axis.key));
+    if (&axes == &spec.axes && std::ranges::any_of(axis.values, [](double v) { return std::isinf(v); }))
+      refuse(spec, axis.key, "goes to infinity", "finite values, or inf for all designs");
+    if (axis.key == "motor_gain" && spec.scene.motor_law == MotorLaw::angle &&
+        std::ranges::any_of(axis.values, [](double v) { return std::isinf(v); }))
+      refuse(spec, axis.key, "is infinite, with which motor_law = \"angle\" would swing indefinitely",
+             "finite values");
   }
 }
 
@@ -118,6 +128,8 @@ void check_common(const Spec& spec) {
       const auto variable = find_variable(axis.key, nullptr);
       if (variable) common.*variable->parameter() = Design{}.*variable->parameter();
     }
+  // Each design may have a gain of its own, which is checked.
+  if (spec.scene.motor_law == MotorLaw::angle && std::isinf(common.motor_gain)) common.motor_gain = 1.0;
   check_design(common, spec.scene, origin_of(spec));
 }
 
@@ -132,13 +144,20 @@ void check_labels(const Spec& spec) {
              fmt::format("at most {} bytes of printable UTF-8", most_label_bytes));
 }
 
+}  // namespace
+
+void refuse_drawing(const Spec& spec) {
+  refuse(spec, "hoop", "draws masses that are fixed to the ring, which a pendulum is not",
+         "mass_ratio, offset_ratio, pendulum_inertia and inertia_factor");
+}
+
+namespace {
+
 /// The ratios of [hoop] are given once, by its numbers.
 void check_body(const Spec& spec) {
   check_hoop(spec);
   if (!spec.hoop) return;
-  if (spec.scene.model != Mechanism::hoop)
-    refuse(spec, "hoop", "draws masses that are fixed to the ring, which a pendulum is not",
-           "mass_ratio, offset_ratio, pendulum_inertia and inertia_factor");
+  if (spec.scene.model != Mechanism::hoop) refuse_drawing(spec);
   Design design = spec.design;
   apply_ratios(reduce_checked(*spec.hoop), design);
   for (double Design::*ratio : body_ratios)
@@ -207,6 +226,10 @@ void check_capabilities(const Spec& spec) {
     refuse_without(model.exact, "method", "a semi-analytic solver", "a stepper, for example \"gsl-rk8pd\"");
   else
     refuse_without(model.integration, "method", "an integration in time", "\"exact\"");
+  const GslStepper* stepper = find_gsl_stepper(resolved_method(spec));
+  if (model.mechanism == Mechanism::pendulum && stepper && (stepper->implicit || stepper->multistep))
+    refuse(spec, "method", fmt::format("= {} cannot follow the pieces of a motor's torque", stepper->name),
+           "an explicit stepper, for example gsl-rk8pd");
   if (spec.numerics.audit > 0.0)
     refuse_without(model.integration && (model.exact || !model.stepper.empty()), "audit", "a second method",
                    "0");

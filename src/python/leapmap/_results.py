@@ -22,6 +22,11 @@ _POINTS = {
                      "over the weight, 0 in flight; negative: the plane would have to hold the hoop down"),
     "friction": ("1", "over the weight, positive downhill"), "phase": ("1", "1 rolling, 2 sliding, 3 flight")
 }
+_OF_PENDULUM = {
+    "pendulum_angle": ("rad", "0: it points at the plane"),
+    "pendulum_spin": ("rad s-1", "not relative to the hoop"),
+    "motor_torque": ("1", "on the pendulum, in (m + m_p) g R")
+}
 
 
 def _described(name):
@@ -60,10 +65,11 @@ class Outcomes:
         if name.startswith("_"):  # while it is unpickled there is nothing yet
             raise AttributeError(name)
         if name in _FIELDS:
-            needs = _FIELDS[name]["friction"]
-            raise AttributeError(f"{name} was not computed: " +
-                                 (f"it needs friction={needs!r}" if needs and
-                                  needs != self._given.get("friction", "sticking") else "name it in fields"))
+            for key, usual in (("model", "hoop"), ("friction", "sticking")):
+                needs = _FIELDS[name][key]
+                if needs and self._given.get(key, usual) not in (needs, "any"):
+                    raise AttributeError(f"{name} was not computed: it needs {key}={needs!r}")
+            raise AttributeError(f"{name} was not computed: name it in fields")
         raise AttributeError(f"outcomes have no {name!r}; they have {', '.join(self._fields)}")
 
     def __repr__(self):
@@ -200,6 +206,8 @@ class Motion:
         Contact forces over the weight.
     phase : ndarray
         1 rolling, 2 sliding, 3 flight.
+    pendulum_angle, pendulum_spin, motor_torque : ndarray
+        Of a pendulum only: its angle [rad] and spin [rad/s], and the torque on it [(m + m_p) g R].
     phases : list of dict
         The beginning of each phase: phase, direction of sliding (1 forwards, -1 backwards, else 0), t [s],
         phi [rad], spin [rad/s], x [m].
@@ -235,7 +243,7 @@ class Motion:
         import xarray
 
         columns = {name: ("t", getattr(self, name), {"units": unit, "long_name": meaning})
-                   for name, (unit, meaning) in _POINTS.items()}
+                   for name, (unit, meaning) in (_POINTS | _OF_PENDULUM).items() if hasattr(self, name)}
         return xarray.Dataset({name: column for name, column in columns.items() if name != "t"},
                               {"t": columns["t"]})
 

@@ -17,7 +17,9 @@ def solve(*, hoop=None, friction="sticking", jumps=1, settle=0, most_period=16, 
     """Solve designs: when, how high and how far each of them jumps.
 
     Arrays broadcast as numpy's do. Parameters that are not given are those of the paper's hoop. With
-    ``motor_in_flight=False`` a motor idles while the hoop flies.
+    ``motor_in_flight=False`` a motor idles while the hoop flies. With ``model="pendulum"`` a motor swings a
+    pendulum on the hoop's axis, as ``motor_law`` says: "constant", "until_angle", "until_speed", "speed" or
+    "angle".
 
     Parameters
     ----------
@@ -234,13 +236,18 @@ def _whole_counts(parameters):
 
 
 def _parameter_line(row):
-    only = f"; {row['friction']} only" if row["friction"] and not row["meaning"].startswith(
-        row["friction"]) else ""
+    said = any(row[key] and row["meaning"].startswith(row[key]) for key in ("friction", "model"))
+    only = "" if said else _only(row)
     kinds = "float, str or array_like" if row["array"] else "float or str"
     unit = f" [{row['unit']}]" if row["unit"] not in ("", "1") else ""
     meaning = row["meaning"][0].upper() + row["meaning"][1:]
     return (f"{row['name']} : {kinds}, default {_default(row)}\n"
             f"        {meaning}{unit}{only}; {row['allowed']}.")
+
+
+def _only(row):
+    names = [row[key] for key in ("model", "friction") if row[key]]
+    return f"; {' with '.join(names)} only" if names else ""
 
 
 def _default(row):
@@ -249,8 +256,7 @@ def _default(row):
 
 def _field_line(row):
     return f"* {row['name']} [{row['unit']}]: {row['meaning']}" + (
-        f"; {row['friction']} only" if row["friction"] else
-        "") + ("; " + ", ".join(f"{code} {name}"
+        _only(row)) + ("; " + ", ".join(f"{code} {name}"
                                 for code, name in enumerate(row["codes"])) if row["codes"] else "")
 
 
