@@ -20,6 +20,23 @@ std::string and_some(std::size_t designs, std::string_view what) {
   return designs > 0 ? fmt::format("; {} {}", grouped(designs), what) : "";
 }
 
+/// Wilson's upper bound of a share, of which so many of a sample were found: with 95 % confidence it is less.
+double most_likely_share(std::size_t found, std::size_t sample) {
+  constexpr double z = 1.959963984540054;
+  const double n = static_cast<double>(sample), p = static_cast<double>(found) / n, z2 = z * z;
+  return (p + z2 / (2.0 * n) + z * std::sqrt(p * (1.0 - p) / n + z2 / (4.0 * n * n))) / (1.0 + z2 / n);
+}
+
+/// What the audit states of the whole map, if it says enough.
+std::string statement(const AuditReport& report) {
+  const std::size_t judged = report.designs - report.failed - report.undecided;
+  constexpr std::size_t enough = 20;
+  if (judged < enough) return "";
+  const std::size_t wrong = report.flag_mismatches + report.beyond_tolerance;
+  return fmt::format("; of the map at most {:.2g} % are wrong (95 % confidence)",
+                     100.0 * most_likely_share(wrong, judged));
+}
+
 }  // namespace
 
 void say_audit(const AuditReport& report) {
@@ -27,11 +44,11 @@ void say_audit(const AuditReport& report) {
     return std::isnan(most) ? "not measured" : fmt::format("{:.1e}", most);
   };
   say("check    {} designs by {}: height within {} diameters, time within {}, motion within {}, {} flags "
-      "differ{}{}{}\n",
+      "differ{}{}{}{}\n",
       grouped(report.designs), printable(report.method), error(report.max_abs_height_error),
       error(report.max_rel_time_error), error(report.max_rel_motion_error), grouped(report.flag_mismatches),
       and_some(report.beyond_tolerance, "beyond the tolerance"), and_some(report.undecided, "inconclusive"),
-      and_some(report.failed, "failed, not compared"));
+      and_some(report.failed, "failed, not compared"), statement(report));
   if (report.refereed > 0)
     say("referee  {} of them by the independent reference solver: {} wrong, largest error {}{}\n",
         grouped(report.refereed), grouped(report.overruled), error(report.referee_max_error),

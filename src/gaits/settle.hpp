@@ -2,6 +2,7 @@
 /// The gait that a design settles on: an outcome's gait_ fields.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -24,7 +25,9 @@ class GaitSolver {
   bool orbit_of(const Design& design, Orbit& orbit);
 
  private:
-  void settle(std::span<const Design> designs);
+  void settle(std::span<const Design> designs, const std::function<void(std::size_t, const Orbit&)>& found);
+  void take_out_settled(const std::function<void(std::size_t, const Orbit&)>& found);
+  bool is_settled(const Design& design, std::span<const Landed> seen, Orbit& orbit);
   void look_on();
   void jump_on(Start start);
   bool find_orbit(const Design& design, std::span<const Landed> seen, Orbit& orbit);

@@ -439,6 +439,11 @@ void set_defaults(const std::vector<Entry>& entries, bool asks_for_gaits, Spec& 
   const bool varies = std::ranges::find(spec.axes, "mu_static", &Axis::key) != spec.axes.end() ||
                       !spec.points.empty() || given("mu_static", true);
   if (!given("mu_kinetic") && !varies) spec.design.mu_kinetic = spec.design.mu_static;
+  // What an audit states hangs on how many designs it looks at, not on their share of the map.
+  constexpr double enough = 400.0;
+  double designs = 1.0;
+  for (const Axis& axis : spec.axes) designs *= static_cast<double>(axis.values.size());
+  if (!given("audit")) spec.numerics.audit = std::min(spec.numerics.audit, enough / designs);
 }
 
 /// Keys that contradict each other.
