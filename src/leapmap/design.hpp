@@ -27,6 +27,8 @@ struct Design {
       std::numeric_limits<double>::quiet_NaN();  ///< kinetic, in [0, 1e6]; NaN: equal to
                                                  ///< mu_static; larger: mu_static is set to it
   double restitution = 0.0;                      ///< Poisson's, in [0, 1]
+  double size = 1.0;  ///< radius over Scene::radius, > 0; scales times and speeds only
+  double mass = 1.0;  ///< total mass over that of the nominal hoop, > 0; scales forces and energies only
   // Of a pendulum, Mechanism::pendulum; mass_ratio and offset_ratio are its mass and its length then.
   double pendulum_inertia = 0.0;  ///< its own, about its centre of mass [m_p L^2], in [0, 1e12]
   double pendulum_angle = 0.0;    ///< psi at t = 0 [rad], in [-1e6, 1e6], measured as phi: 0: it hangs
@@ -39,8 +41,6 @@ struct Design {
   double motor_gain =
       std::numeric_limits<double>::infinity();  ///< laws speed and angle: torque per missing speed or angle
   double motor_damping = 0.0;                   ///< law angle: torque per spin of the pendulum
-  double size = 1.0;  ///< radius over Scene::radius, > 0; scales times and speeds only
-  double mass = 1.0;  ///< total mass over that of the nominal hoop, > 0; scales forces and energies only
 };
 
 }  // namespace leapmap
