@@ -67,7 +67,9 @@ class Motor {
       piece_ = missing > 0.0 ? Piece::high : Piece::low;
       if (at_speed || std::abs(missing) <= rounding) {
         const double torque = needed();
-        piece_ = torque > high(at) ? Piece::high : torque < low(at) ? Piece::low : Piece::held;
+        piece_ = torque > high(at) + slack()  ? Piece::high
+                 : torque < low(at) - slack() ? Piece::low
+                                              : Piece::held;
       }
     } else {
       piece_ = way_ > 0.0 ? Piece::high : Piece::low;
@@ -95,13 +97,13 @@ class Motor {
         return piece_ == Piece::high ? missing : -missing;
       }
       case MotorEvent::high_is_passed:  // from below, or back again
-        return piece_ == Piece::high ? wanted(at) - high(at)
-                                     : high(at) - (piece_ == Piece::held ? torque : wanted(at));
+        if (piece_ == Piece::held) return high(at) + slack() - torque;
+        return piece_ == Piece::high ? wanted(at) - high(at) : high(at) - wanted(at);
       case MotorEvent::low_is_passed:
         break;
     }
-    return piece_ == Piece::low ? low(at) - wanted(at)
-                                : (piece_ == Piece::held ? torque : wanted(at)) - low(at);
+    if (piece_ == Piece::held) return torque - low(at) + slack();
+    return piece_ == Piece::low ? low(at) - wanted(at) : wanted(at) - low(at);
   }
 
   /// Goes on to the piece after an event, where that does not depend on forces; false: decide() has to.
@@ -142,6 +144,9 @@ class Motor {
   double speed_to_hold() const { return law_ == MotorLaw::speed ? target_ : 0.0; }
 
  private:
+  /// By how much a motor that holds may give more than it has: when it then lets go, it is clear which way
+  /// the speed changes. Without it a torque that only just touches the line would be decided by roundings.
+  double slack() const { return 1e-9 * most_; }
   bool is_until() const { return law_ == MotorLaw::until_angle || law_ == MotorLaw::until_speed; }
   bool holds() const { return brakes_ || (law_ == MotorLaw::speed && !std::isfinite(gain_)); }
   bool regulates() const {

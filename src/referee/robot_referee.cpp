@@ -89,6 +89,8 @@ class Run {
     return robot_.law == MotorLaw::angle || (robot_.law == MotorLaw::speed && std::isfinite(robot_.gain));
   }
   bool seeks_speed() const { return brakes_ || (robot_.law == MotorLaw::speed && !follows()); }
+  /// As the solver has it: a torque that only touches its limit lets nothing go.
+  double slack() const { return 1e-9 * std::abs(robot_.stall); }
   double sought() const { return robot_.law == MotorLaw::speed ? robot_.target : 0.0; }
   double way_to_target(const RobotMotion& at) const {
     const double here = robot_.law == MotorLaw::until_angle ? at.psi : at.swing - at.spin;
@@ -113,7 +115,9 @@ class Run {
       const double near = 2.0 * rounding * (std::abs(at_.swing) + std::abs(at_.spin) + std::abs(sought()));
       if (!at_speed && std::abs(missing) > near) return;
       const double torque = needed(at_);
-      mode_.motor = torque > range.up ? Motored::up : torque < range.down ? Motored::down : Motored::holds;
+      mode_.motor = torque > range.up + slack()     ? Motored::up
+                    : torque < range.down - slack() ? Motored::down
+                                                    : Motored::holds;
     } else {
       mode_.motor = robot_.stall < 0.0 ? Motored::down : Motored::up;
     }
@@ -130,10 +134,12 @@ class Run {
       guards.push_back({[this](const RobotMotion& at) { return way_to_target(at); },
                         [this] { brakes_ = true, decide_motor(false); }});
     } else if (mode_.motor == Motored::holds) {
-      guards.push_back({[this](const RobotMotion& at) { return motor_range(robot_, at).up - needed(at); },
-                        [this] { mode_.motor = Motored::up; }});
-      guards.push_back({[this](const RobotMotion& at) { return needed(at) - motor_range(robot_, at).down; },
-                        [this] { mode_.motor = Motored::down; }});
+      guards.push_back(
+          {[this](const RobotMotion& at) { return motor_range(robot_, at).up + slack() - needed(at); },
+           [this] { mode_.motor = Motored::up; }});
+      guards.push_back(
+          {[this](const RobotMotion& at) { return needed(at) - motor_range(robot_, at).down + slack(); },
+           [this] { mode_.motor = Motored::down; }});
     } else if (seeks_speed()) {
       const double sign = mode_.motor == Motored::up ? 1.0 : -1.0;
       guards.push_back(

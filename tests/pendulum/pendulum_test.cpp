@@ -231,6 +231,21 @@ TEST(Pendulum, EndsThoughItReboundsForEverOrItsTimeIsOverInFlight) {
   EXPECT_EQ(referee::Referee(scene, 1e-12).solve(design).status, Status::stalled);
 }
 
+TEST(Pendulum, ATorqueThatOnlyTouchesItsLimitLetsNothingGo) {
+  // The brake that holds it needs all but all of its torque at one moment.
+  Design design;
+  design.slope = 0.47514001630829467, design.mass_ratio = 15.17092911901087;
+  design.offset_ratio = 0.7389402095478783, design.inertia_factor = 0.8801513373517766;
+  design.release_spin = 0.5156789635661707, design.pendulum_angle = 0.2491200350172189;
+  design.pendulum_spin = 0.5679887020223422, design.motor_torque = -0.5235456951549398;
+  design.motor_target = 3.0;
+  const Scene scene = with(Friction::coulomb, MotorLaw::until_angle);
+  const double slipped = solve(design, scene, {.method = "gsl-rkf45", .tolerance = 1e-11}).slip_distance;
+  EXPECT_NEAR(slipped, 31.3666, 1e-3);
+  for (const double tolerance : {1e-9, 1e-10, 1e-11, 1e-12})
+    EXPECT_NEAR(solve(design, scene, {.tolerance = tolerance}).slip_distance, slipped, 1e-5) << tolerance;
+}
+
 TEST(Pendulum, AnAngleIsSoughtWithAGainAndOnlyWithOne) {
   Design design;
   design.slope = 0.0, design.pendulum_angle = 0.5, design.motor_torque = 3.0, design.motor_target = 0.0;
