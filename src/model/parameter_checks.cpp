@@ -54,7 +54,7 @@ const Parameter* first_refused(const Design& design, const Scene& scene) {
 }
 
 /// Whether its motor, if it is to bring the pendulum to an angle, has a finite gain: as stiffly as can be it
-/// would swing about it for ever.
+/// would swing about it indefinitely.
 bool has_gain(const Design& design, const Scene& scene) {
   return scene.model != Mechanism::pendulum || scene.motor_law != MotorLaw::angle ||
          std::isfinite(design.motor_gain);

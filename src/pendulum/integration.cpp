@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace leapmap::pendulum {
 namespace {
@@ -50,19 +49,15 @@ void PhaseIntegration::watch_motor() {
   if (!system.idles) system.motor.tell_events([&](MotorEvent event) { watches.push_back(watch_of(event)); });
 }
 
-template <class T>
-T PhaseIntegration::value(Watch watch, const Vector<T>& at) const {
-  using std::abs;
+/// Of what hangs on forces.
+Rated PhaseIntegration::value(Watch watch, const Vector<Rated>& at) const {
   switch (watch) {
     case Watch::normal_force:
       return system.forces(at).normal;
     case Watch::hold_forwards:
     case Watch::hold_backwards: {
-      const Forces<T> f = system.forces(at);
-      // Raised by some roundings: what sticks but for rounding sticks.
-      const T slack = 32.0 * std::numeric_limits<double>::epsilon() *
-                      (bounds.mu_static * abs(f.normal) + abs(f.friction) + abs(f.torque));
-      const T held = bounds.mu_static * f.normal + slack;
+      const Forces<Rated> f = system.forces(at);
+      const Rated held = static_friction(f, bounds.mu_static);
       return watch == Watch::hold_forwards ? held + f.friction : held - f.friction;
     }
     case Watch::lift:
@@ -71,14 +66,10 @@ T PhaseIntegration::value(Watch watch, const Vector<T>& at) const {
       return system.direction * (at[vx] - at[w]);
     case Watch::pivot:
       return pivot(system.robot, sincos_of(at[psi]), system.drag, system.drive(at).holds);
-    case Watch::runway:
-      return bounds.runway - abs(at[x]);
     case Watch::stops_forwards:
       return at[w];
     case Watch::stops_backwards:
       return -at[w];
-    case Watch::height:
-      return at[y];
     case Watch::climb:
       return at[vy];
     case Watch::descent:
@@ -90,7 +81,7 @@ T PhaseIntegration::value(Watch watch, const Vector<T>& at) const {
   }
   const bool by_force = system.motor.is_holding();
   return system.motor.distance_to(motor_event(watch), turning(at),
-                                  by_force ? system.forces(at).torque : T(0.0));
+                                  by_force ? system.forces(at).torque : Rated(0.0));
 }
 
 Sample<double> PhaseIntegration::sample(Watch watch, const Y& at) const {

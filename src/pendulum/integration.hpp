@@ -137,22 +137,21 @@ class PhaseIntegration {
   System system;
   Bounds bounds;
   StepObserver observer;  ///< unset: nobody looks on
-  long steps = 0;         ///< taken since somebody set it to zero
+  long steps = 0;         ///< taken since it was set to zero
 
   /// Moves the state and its time through the phase. happens(Watch, time, state) of every event, in order;
   /// true: the phase ends there.
   template <class Happens>
   Followed follow(double& time, Y& at, const Happens& happens);
 
-  /// What the phase at that state watches, told anew.
+  /// What the phase watches.
   std::vector<Watch> watches;
   /// Adds what may end the motor's piece.
   void watch_motor();
 
  private:
   Sample<double> sample(Watch watch, const Y& at) const;
-  template <class T>
-  T value(Watch watch, const Vector<T>& at) const;
+  Rated value(Watch watch, const Vector<Rated>& at) const;
 
   IntegrationOptions options_;
   GslIntegrator<dimension> integrator_;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// A robot with friction: rolling, sliding, flying and landing.
 #include <cmath>
-#include <limits>
 
 #include "hoop/units.hpp"
 #include "pendulum/solver.hpp"
@@ -30,9 +29,7 @@ auto Solver::next_contact(Leaving leaving) -> Next {
   if (slip != 0.0) return slip > 0.0 ? Next::slides_forwards : Next::slides_backwards;
   system.mode = ContactMode::rolls;
   const Forces<double> f = system.forces(at_);
-  const double slack = 32.0 * std::numeric_limits<double>::epsilon() *
-                       (friction_.mu_static * std::abs(f.normal) + std::abs(f.friction) + std::abs(f.torque));
-  if (f.normal > 0.0 && std::abs(f.friction) <= friction_.mu_static * f.normal + slack) return Next::rolls;
+  if (f.normal > 0.0 && std::abs(f.friction) <= static_friction(f, friction_.mu_static)) return Next::rolls;
   if (would_leave) return Next::leaves;
   return f.friction > 0.0 ? Next::slides_backwards : Next::slides_forwards;
 }
@@ -53,7 +50,8 @@ bool Solver::begin_contact(Next next) {
   const ContactMode mode = next == Next::rolls ? ContactMode::rolls : ContactMode::slides;
   const bool goes_on = is_begun_ && system.mode == mode && system.direction == direction;
   system.mode = mode, system.direction = direction, system.drag = -friction_.mu_kinetic * direction;
-  if (!goes_on) decide_motor(system.motor.is_holding());  // another phase may take another torque
+  if (!goes_on)
+    decide_motor(system, at_, system.motor.is_holding());  // another phase may take another torque
   const bool has_answer = mode == ContactMode::rolls || pivot(system.robot, sincos_of(at_[psi]), system.drag,
                                                               system.motor.is_holding()) > 0.0;
   if (goes_on && has_answer) return true;
@@ -95,7 +93,6 @@ auto Solver::follow_contact() -> Next {
 }
 
 auto Solver::after(Watch watch) -> Next {
-  System& system = contact_.system;
   switch (watch) {
     case Watch::hold_forwards:
       return lifts_off() ? Next::leaves : Next::slides_forwards;
@@ -120,10 +117,7 @@ auto Solver::after(Watch watch) -> Next {
     default:
       break;
   }
-  const MotorEvent event = motor_event(watch);
-  const bool at_speed = event == MotorEvent::reaches_speed;
-  if (at_speed) at_[u] = at_[w] + system.motor.speed_to_hold();
-  if (!system.motor.pass(event)) decide_motor(at_speed);
+  pass_motor_event(contact_.system, at_, watch);
   return next_contact(Leaving::unless_it_sticks);
 }
 
@@ -171,13 +165,13 @@ auto Solver::fly_and_land() -> Next {
   if (flight.flight_time > 0.0) land();
   at_ = landed_;
   contact_.system.motor = flight_.system.motor;
-  decide_motor(stays_held_);
+  decide_motor(contact_.system, at_, stays_held_);
   if (at_[vy] > 0.0) return Next::leaves;
   return next_contact(flight.flight_time > 0.0 ? Leaving::always : Leaving::never);
 }
 
 void Solver::solve_sliding() {
-  decide_motor(false);
+  decide_motor(contact_.system, at_, false);
   const bool from_rest = is_at_rest();
   show_release();
   Next next = next_contact(Leaving::unless_it_sticks);

@@ -14,6 +14,9 @@
 /// pendulum that is locked (u = w) is the hoop of (10) to (12) with J0 = J + A.
 #pragma once
 
+#include <cmath>
+#include <limits>
+
 #include "leapmap/design.hpp"
 #include "numerics/lanes.hpp"
 
@@ -93,6 +96,15 @@ Forces<T> rolling(const Robot& r, const SinCos<T>& psi, const T& u, const Drive<
   f.normal = r.cos_slope + r.rho * (s * f.pendulum + c * u * u);
   f.friction = -f.torque - r.J * f.hoop;
   return f;
+}
+
+/// What friction can hold a rolling contact with, raised by some roundings: what sticks but for rounding
+/// sticks.
+template <class T>
+T static_friction(const Forces<T>& f, double mu_static) {
+  using std::abs;
+  return mu_static * f.normal + 32.0 * std::numeric_limits<double>::epsilon() *
+                                    (mu_static * abs(f.normal) + abs(f.friction) + abs(f.torque));
 }
 
 /// Minus y'' without the plane, times what turns; falls through zero where sliding ends in a lift-off,

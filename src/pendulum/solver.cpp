@@ -75,12 +75,19 @@ void Solver::ended(Status status, const char* reason) {
   over_ = true;
 }
 
-/// The motor's piece at this state, for the contact as it is.
-void Solver::decide_motor(bool at_speed) {
-  System& system = contact_.system;
-  system.motor.decide(turning(at_), at_speed, [&] {
-    return system.forces(at_, Drive<double>{0.0, true}).torque;
+/// The motor's piece at a state, in contact or in flight as the system is.
+void Solver::decide_motor(System& system, const Y& at, bool at_speed) {
+  system.motor.decide(turning(at), at_speed, [&] {
+    return system.forces(at, Drive<double>{0.0, true}).torque;
   });
+}
+
+/// Goes on to the motor's next piece, at the state where an event ended the last one.
+void Solver::pass_motor_event(System& system, Y& at, Watch watch) {
+  const MotorEvent event = motor_event(watch);
+  const bool at_speed = event == MotorEvent::reaches_speed;
+  if (at_speed) at[u] = at[w] + system.motor.speed_to_hold();
+  if (!system.motor.pass(event)) decide_motor(system, at, at_speed);
 }
 
 /// Lets whoever looks on see the release, which may be all there is before a lift-off.
@@ -124,7 +131,7 @@ bool Solver::is_held_down_without_motor() const {
 
 void Solver::solve_sticking() {
   System& system = contact_.system;
-  decide_motor(false);
+  decide_motor(system, at_, false);
   if (is_at_rest()) return ended(Status::stalled);
   show_release();
   if (observer_->phase) observer_->phase(Phase::rolling, 0, 0.0, at_);
@@ -143,7 +150,6 @@ void Solver::solve_sticking() {
       return watch == Watch::runway || is_of_motor(watch) || rocks(watch);
     });
     if (over_) return;
-    at_ = in_contact(at_);
     if (followed == Followed::failed) return ended(Status::failed, no_phase);
     const bool repeats = followed == Followed::stopped && ended_by != Watch::runway && !is_of_motor(ended_by);
     if (followed == Followed::out_of_time || repeats) return ended(Status::stalled);
@@ -154,29 +160,17 @@ void Solver::solve_sticking() {
   ended(Status::failed, too_many);
 }
 
-/// A state in contact without the roundings that some steppers leave: it is on the plane, and a rolling one
-/// does not slip.
-Y Solver::in_contact(Y at) const {
-  at[y] = at[vy] = 0.0;
-  if (contact_.system.mode == ContactMode::rolls) at[vx] = at[w];
-  return at;
-}
-
 /// Goes on to the motor's next piece. A normal force that falls to zero or below with it is a lift-off. True:
 /// the jump.
 bool Solver::take_motor_event(Watch watch) {
   System& system = contact_.system;
   const double before = system.forces(at_).normal;
-  const MotorEvent event = motor_event(watch);
-  const bool at_speed = event == MotorEvent::reaches_speed;
-  if (at_speed) at_[u] = at_[w] + system.motor.speed_to_hold();
-  if (!system.motor.pass(event)) decide_motor(at_speed);
+  pass_motor_event(system, at_, watch);
   return before > 0.0 && !(system.forces(at_).normal > 0.0) && take_lift_off(time_, at_);
 }
 
 /// Looks at a lift-off without slip. True: it ends the design, by a jump or a failure.
-bool Solver::take_lift_off(double time, const Y& from) {
-  const Y at = in_contact(from);
+bool Solver::take_lift_off(double time, const Y& at) {
   Flight<double> flight;
   if (!fly(time, at, flight)) {
     ended(Status::failed, no_phase);
@@ -228,7 +222,7 @@ bool Solver::fly(double time, const Y& at, Flight<double>& flight) {
   flight_.system = contact_.system;
   System& system = flight_.system;
   system.mode = ContactMode::flies, system.idles = !scene_->motor_in_flight;
-  if (!system.idles) system.motor.decide(turning(at), false, [] { return 0.0; });
+  if (!system.idles) decide_motor(system, at, false);
   if (const auto torque = system.idles ? 0.0 : system.motor.steady_torque()) {
     fly_steadily(time, at, *torque, flight);
     return true;
@@ -247,11 +241,7 @@ bool Solver::fly(double time, const Y& at, Flight<double>& flight) {
     });
     if (followed != Followed::stopped) return false;
     if (landed || sinks) break;
-    const MotorEvent event = motor_event(ended_by);
-    const bool at_speed = event == MotorEvent::reaches_speed;
-    if (at_speed) landed_[u] = landed_[w] + system.motor.speed_to_hold();
-    if (!system.motor.pass(event))
-      system.motor.decide(turning(landed_), at_speed, [] { return 0.0; });  // nothing turns but the motor
+    pass_motor_event(system, landed_, ended_by);
   }
   if (!landed) {
     landed_ = at, flight = {};  // it never clears the plane
@@ -266,7 +256,7 @@ bool Solver::fly(double time, const Y& at, Flight<double>& flight) {
 /// Lands from the end of a flight: landed_ becomes the state just after it. Returns the normal impulse. The
 /// motor's torque is finite, so that hoop and pendulum each take what they are given; with friction a motor
 /// that holds them together goes on to hold where they would part more slowly than rest_speed, or each
-/// landing would lift them off again, ever less, for ever.
+/// landing would lift them off again, ever less.
 double Solver::land() {
   const Robot& r = contact_.system.robot;
   const auto [s, c] = sincos_of(landed_[psi]);

@@ -42,7 +42,8 @@ class Solver {
  private:
   void begin(const Design& design, const Scene& scene);
   void ended(Status status, const char* reason = nullptr);
-  void decide_motor(bool at_speed);
+  static void decide_motor(System& system, const Y& at, bool at_speed);
+  static void pass_motor_event(System& system, Y& at, Watch watch);
   void show_release() const;
   bool is_at_rest() const;
   bool rocks(Watch watch);
@@ -50,8 +51,7 @@ class Solver {
 
   void solve_sticking();
   bool take_motor_event(Watch watch);
-  bool take_lift_off(double time, const Y& from);
-  Y in_contact(Y at) const;
+  bool take_lift_off(double time, const Y& at);
 
   enum class Next { rolls, slides_forwards, slides_backwards, leaves };
   void solve_sliding();
