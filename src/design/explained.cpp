@@ -286,11 +286,8 @@ bool Explained::film_residuals(std::span<const double> at, std::span<const std::
   if (!film_.residuals(design_at(at), camera_at(at), {numbers, by_design_, by_camera_}, residuals, jacobian))
     return false;
   const std::size_t columns = problem_.bounds.size();
-  for (std::size_t i = 0; i < residuals.size(); ++i) {
-    const double error = error_of(numbers[i]);
-    residuals[i] /= error;
-    for (std::size_t k = 0; k < columns && !jacobian.empty(); ++k) jacobian[i * columns + k] /= error;
-  }
+  for (std::size_t i = 0; i < residuals.size(); ++i) residuals[i] /= error_of(numbers[i]);
+  for (std::size_t i = 0; i < jacobian.size(); ++i) jacobian[i] /= error_of(numbers[i / columns]);
   return true;
 }
 
@@ -334,8 +331,10 @@ bool Explained::event_differences(std::span<const double> at, std::span<double> 
   return true;
 }
 
-bool Explained::event_residuals(std::span<const double> at, std::span<double> residuals,
+bool Explained::event_residuals(std::span<const double> at, std::span<double> told,
                                 std::span<double> jacobian) const {
+  std::vector<double> untold(told.empty() ? measured_.events.size() : 0);
+  const std::span<double> residuals = told.empty() ? std::span(untold) : told;
   if (!jacobian.empty() && !model_of(spec_.scene).gradients)
     return event_differences(at, residuals, jacobian);
   const Design design = design_at(at);

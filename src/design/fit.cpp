@@ -110,7 +110,7 @@ Fitted fit_model(const Measurements& measured, const Spec& spec, Friction fricti
     judge_film(explained, best.residuals, options.loss, spreading, told);
   }
   name_parameters(explained, best, told);
-  tell_uncertainty(problem, best, spreading.uncertainty, options.loss, told);
+  tell_uncertainty(problem, best, spreading.uncertainty, options, told);
   if (known) {
     // A true model passes through as many numbers as it has free parameters, but those at their bounds.
     const auto held =

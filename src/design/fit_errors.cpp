@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
-#include <tuple>
 #include <utility>
 
 #include "design/correlated.hpp"
+#include "engine/parallel.hpp"
 #include "numerics/median.hpp"
 #include "numerics/nan.hpp"
 
@@ -25,7 +25,7 @@ LeastSquaresFit with_one_held(const LeastSquares& problem, std::vector<double> a
                       std::span<double> jacobian) {
     std::vector<double> all(others.begin(), others.end());
     all.insert(all.begin() + static_cast<std::ptrdiff_t>(held), value);
-    std::vector<double> whole(jacobian.empty() ? 0 : residuals.size() * columns);
+    std::vector<double> whole(jacobian.empty() ? 0 : problem.residuals * columns);
     if (!problem.evaluate(all, residuals, whole)) return false;
     for (std::size_t i = 0, to = 0; i < whole.size(); ++i)
       if (i % columns != held) jacobian[to++] = whole[i];
@@ -39,16 +39,16 @@ LeastSquaresFit with_one_held(const LeastSquares& problem, std::vector<double> a
 }
 
 /// The ends of where the sum of squares stays below `most`: by steps from the best outwards, and bisection
-/// where that ends.
-std::pair<double, double> profile(const LeastSquares& problem, std::span<const double> best, std::size_t k,
-                                  double most) {
+/// where that ends. Both ends are looked for side by side.
+std::array<double, 2> profile(const LeastSquares& problem, std::span<const double> best, std::size_t k,
+                              double most, const FitOptions& options) {
   constexpr int steps = 8, halvings = 6;
-  const Side& side = problem.bounds[k];
-  std::array<double, 2> ends{best[k], best[k]};
-  for (const int way : {-1, 1}) {
+  const std::array bounds{problem.bounds[k].low, problem.bounds[k].high};
+  std::array ends{best[k], best[k]};
+  const auto find_end = [&](std::size_t which) {
     std::vector<double> at(best.begin(), best.end());
-    const double bound = way < 0 ? side.low : side.high;
-    double& end = ends[way < 0 ? 0 : 1];
+    const double bound = bounds[which];
+    double& end = ends[which];
     const auto holds = [&](double value) {
       const LeastSquaresFit fit = with_one_held(problem, at, k, value);
       if (!(fit.sum <= most)) return false;
@@ -61,8 +61,10 @@ std::pair<double, double> profile(const LeastSquares& problem, std::span<const d
     while (step <= steps && holds(beyond = best[k] + (bound - best[k]) * step / steps)) ++step;
     for (int halving = 0; step <= steps && halving < halvings; ++halving)
       if (const double middle = 0.5 * (end + beyond); !holds(middle)) beyond = middle;
-  }
-  return {ends[0], ends[1]};
+    return true;
+  };
+  parallel_for_each(ends.size(), options.threads, options.stop_requested, [&] { return find_end; });
+  return ends;
 }
 
 /// Residuals line by line, of the times at which all was measured that ever was.
@@ -193,8 +195,8 @@ void judge_film(const Explained& explained, std::span<const double> all, Loss lo
   if (told.judged) told.misfit = over_scatter;
 }
 
-void tell_uncertainty(const LeastSquares& problem, const LeastSquaresFit& best, double variance, Loss loss,
-                      ModelFit& told) {
+void tell_uncertainty(const LeastSquares& problem, const LeastSquaresFit& best, double variance,
+                      const FitOptions& options, ModelFit& told) {
   const auto rows = static_cast<Eigen::Index>(problem.residuals),
              columns = static_cast<Eigen::Index>(problem.bounds.size());
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -215,7 +217,8 @@ void tell_uncertainty(const LeastSquares& problem, const LeastSquaresFit& best, 
   }
   // Bad points move no end of a profile. Weights flatten the sum by their mean, as they do its curvature.
   const std::vector<double> weights =
-      loss == Loss::huber ? huber_weights(best.residuals) : std::vector<double>(problem.residuals, 1.0);
+      options.loss == Loss::huber ? huber_weights(best.residuals)
+                                  : std::vector<double>(problem.residuals, 1.0);
   const LeastSquares counted = weighed(problem, weights);
   double sum = 0.0;
   for (std::size_t i = 0; i < weights.size(); ++i) sum += weights[i] * best.residuals[i] * best.residuals[i];
@@ -234,8 +237,10 @@ void tell_uncertainty(const LeastSquares& problem, const LeastSquaresFit& best, 
     const double at = (parameter.value - side.low) / (side.high - side.low);
     parameter.at_bound = at < on || at > 1.0 - on;
     parameter.low = parameter.value - parameter.error, parameter.high = parameter.value + parameter.error;
-    if (!parameter.identified || parameter.at_bound)
-      std::tie(parameter.low, parameter.high) = profile(counted, best.at, k, sum + mean * variance);
+    if (!parameter.identified || parameter.at_bound) {
+      const auto [low, high] = profile(counted, best.at, k, sum + mean * variance, options);
+      parameter.low = low, parameter.high = high;
+    }
     for (std::size_t j = 0; j < told.parameters.size(); ++j) {
       const auto l = static_cast<Eigen::Index>(j);
       told.correlations.push_back(covariance(i, l) / std::sqrt(covariance(i, i) * covariance(l, l)));

@@ -41,7 +41,7 @@ void judge_film(const Explained& explained, std::span<const double> residuals, L
                 Spreading& spreading, ModelFit& told);
 
 /// Standard errors, correlations, and which parameters the data do not determine.
-void tell_uncertainty(const LeastSquares& problem, const LeastSquaresFit& best, double variance, Loss loss,
-                      ModelFit& told);
+void tell_uncertainty(const LeastSquares& problem, const LeastSquaresFit& best, double variance,
+                      const FitOptions& options, ModelFit& told);
 
 }  // namespace leapmap

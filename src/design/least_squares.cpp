@@ -61,9 +61,9 @@ int residuals_at(const gsl_vector* arcs, void* data, gsl_vector* f) {
 int jacobian_at(const gsl_vector* arcs, void* data, gsl_matrix* J) {
   return guarded(data, [&](Followed& followed) {
     const std::size_t rows = followed.problem.residuals, columns = followed.problem.bounds.size();
-    std::vector<double> residuals(rows), jacobian(rows * columns);
+    std::vector<double> jacobian(rows * columns);
     ++followed.evaluations;
-    const bool known = followed.problem.evaluate(followed.place(arcs), residuals, jacobian);
+    const bool known = followed.problem.evaluate(followed.place(arcs), {}, jacobian);
     for (std::size_t i = 0; i < rows; ++i)
       for (std::size_t k = 0; k < columns; ++k)
         gsl_matrix_set(J, i, k, known ? jacobian[i * columns + k] * followed.per_arc(k, arcs) : 0.0);

@@ -15,8 +15,8 @@ namespace leapmap {
 struct LeastSquares {
   std::vector<Side> bounds;   ///< of each parameter
   std::size_t residuals = 0;  ///< their number
-  /// Fills in the residuals at a place, and, if it has room for them, their derivatives, a row of each
-  /// residual. False: there are none there.
+  /// Fills in the residuals at a place, and their derivatives, a row of each residual; an empty span: they
+  /// are not asked for. False: there are none there.
   std::function<bool(std::span<const double> at, std::span<double> residuals, std::span<double> jacobian)>
       evaluate;
 };

@@ -10,14 +10,15 @@
 namespace leapmap {
 namespace {
 
-constexpr double fine = 1e-11, coarse = 1e-6;  // relative errors of motions
+// Relative errors of motions. Derivatives only lead to where residuals are least, and tell errors.
+constexpr double fine = 1e-11, coarse = 1e-6, of_derivatives = 1e-7;
 
 template <class S>
-S parameter_of(double value, std::size_t number) {
+S parameter_of(double value, std::size_t number, std::span<const std::size_t> by) {
   if constexpr (has_derivatives<S>)
-    return S::parameter(value, number);
-  else
-    return value;
+    if (const auto found = std::ranges::find(by, number); found != by.end())
+      return S::parameter(value, static_cast<std::size_t>(found - by.begin()));
+  return S(value);
 }
 
 /// Means over numbers of one kind: of points in the plane's axes and of their positions.
@@ -53,22 +54,22 @@ double FilmModel::descent(const Design& design, const Camera& camera) const {
 }
 
 template <class S>
-bool FilmModel::see(const Design& design, const Camera& camera, std::span<const std::size_t> numbers,
-                    double accuracy, std::vector<Seen<S>>& seen) const {
+bool FilmModel::see(const Design& design, const Camera& camera, const Question& asked, double accuracy,
+                    std::vector<Seen<S>>& seen) const {
   std::vector<double> times;  // after the release, each once
-  for (const std::size_t number : numbers) {
+  for (const std::size_t number : asked.numbers) {
     const double t = observations_[number].t - camera.time_offset;
     if (t >= 0.0 && (times.empty() || t > times.back())) times.push_back(t);
   }
-  const std::vector<MotionAt<S>> motion = motion_at<S>(design, scene_, times, accuracy);
+  const std::vector<MotionAt<S>> motion = motion_at<S>(design, scene_, times, accuracy, asked.by_design);
   if (motion.empty() && !times.empty()) return false;
-  const S held_at = parameter_of<S>(design.release_angle, by_release_angle);
+  const S held_at = parameter_of<S>(design.release_angle, by_release_angle, asked.by_design);
   const MotionAt<S> held{held_at, S(0.0), S(0.0), S(0.0), 0.0, 0.0, 0.0};
   const double second = time_unit(scene_), R = scene_.radius;
-  const S L = parameter_of<S>(design.offset_ratio, by_offset_ratio);
+  const S L = parameter_of<S>(design.offset_ratio, by_offset_ratio, asked.by_design);
   seen.clear();
   std::size_t at = 0;
-  for (const std::size_t number : numbers) {
+  for (const std::size_t number : asked.numbers) {
     const Observation& one = observations_[number];
     const double t = one.t - camera.time_offset;
     while (at + 1 < times.size() && times[at] < t) ++at;
@@ -105,13 +106,13 @@ bool FilmModel::compare(std::span<const Seen<S>> seen, const Design& design, con
                           : one.kind == Measured::angle ? -camera.angle_offset
                                                         : 0.0;
     const double A = value_of(seen[i].a), B = value_of(seen[i].b), rotated = along * A + across * B;
-    residuals[i] = rotated + offset - one.value;
+    if constexpr (!has_derivatives<S>) residuals[i] = rotated + offset - one.value;
     if constexpr (has_derivatives<S>) {
       const double turned = point ? (vertical ? -c * A - s * B : -s * A + c * B) : 0.0;  // by the descent
       double* row = jacobian.data() + i * (asked.by_design.size() + asked.by_camera.size());
-      for (const std::size_t by : asked.by_design)
-        *row++ = along * seen[i].a.by[by] + across * seen[i].b.by[by] +
-                 (film_.is_level && by == by_slope ? turned : 0.0);
+      for (std::size_t k = 0; k < asked.by_design.size(); ++k)
+        *row++ = along * seen[i].a.by[k] + across * seen[i].b.by[k] +
+                 (film_.is_level && asked.by_design[k] == by_slope ? turned : 0.0);
       for (double Camera::*const by : asked.by_camera)
         *row++ = by == &Camera::time_offset    ? -along * seen[i].a_rate - across * seen[i].b_rate
                  : by == &Camera::angle_offset ? (one.kind == Measured::angle ? -1.0 : 0.0)
@@ -127,12 +128,15 @@ bool FilmModel::compare(std::span<const Seen<S>> seen, const Design& design, con
 
 bool FilmModel::residuals(const Design& design, const Camera& camera, const Question& asked,
                           std::span<double> residuals, std::span<double> jacobian) const {
-  const auto run = [&]<class S>(S) {
+  const auto run = [&]<class S>(S, double accuracy) {
     std::vector<Seen<S>> seen;
-    return see<S>(design, camera, asked.numbers, fine, seen) &&
+    return see<S>(design, camera, asked, accuracy, seen) &&
            compare<S>(seen, design, camera, asked, residuals, jacobian);
   };
-  return jacobian.empty() ? run(0.0) : run(DesignDual(0.0));
+  if (!residuals.empty() && !run(0.0, fine)) return false;
+  if (jacobian.empty()) return true;
+  return asked.by_design.size() <= FewDual::derivatives ? run(FewDual(0.0), of_derivatives)
+                                                           : run(DesignDual(0.0), of_derivatives);
 }
 
 bool FilmModel::residuals_with_camera(const Design& design, Camera& camera,
@@ -140,7 +144,7 @@ bool FilmModel::residuals_with_camera(const Design& design, Camera& camera,
                                       std::span<const std::size_t> numbers,
                                       std::span<double> residuals) const {
   std::vector<Seen<double>> seen;
-  if (!see<double>(design, camera, numbers, coarse, seen)) return false;
+  if (!see<double>(design, camera, {numbers}, coarse, seen)) return false;
   const auto fits = [&](double Camera::*number) { return std::ranges::find(free, number) != free.end(); };
   double angle = 0.0;
   std::size_t angles = 0;

@@ -52,7 +52,7 @@ class FilmModel {
     std::span<const std::size_t> by_design{};
     std::span<double Camera::*const> by_camera{};
   };
-  /// False: the design cannot be solved.
+  /// Either may be empty: it is not asked for. False: the design cannot be solved.
   bool residuals(const Design& design, const Camera& camera, const Question& asked,
                  std::span<double> residuals, std::span<double> jacobian) const;
 
@@ -65,7 +65,7 @@ class FilmModel {
   template <class S>
   struct Seen;
   template <class S>
-  bool see(const Design& design, const Camera& camera, std::span<const std::size_t> numbers, double accuracy,
+  bool see(const Design& design, const Camera& camera, const Question& asked, double accuracy,
            std::vector<Seen<S>>& seen) const;
   template <class S>
   bool compare(std::span<const Seen<S>> seen, const Design& design, const Camera& camera,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -17,15 +18,41 @@
 namespace leapmap {
 namespace {
 
+/// The parameters of a design, with derivatives by some of them.
 template <class S>
-S parameter(const Design& design, double value, std::size_t number) {
-  if constexpr (has_derivatives<S>) {
-    // One parameter where it follows the other.
-    return S::parameter(value, number == by_mu_kinetic && kinetic_follows(design) ? by_mu_static : number);
-  } else {
-    return value;
+class Seeded {
+ public:
+  Seeded(const Design& design, std::span<const std::size_t> by) : design_(design), by_(by) {
+    if constexpr (has_derivatives<S>) assert(by.size() <= S::derivatives);
   }
-}
+
+  S parameter(std::size_t number) const {
+    double value = design_.*differentiable[number];
+    if constexpr (has_derivatives<S>) {
+      // One parameter where it follows the other.
+      if (number == by_mu_kinetic && kinetic_follows(design_))
+        value = design_.mu_static, number = by_mu_static;
+      const auto found = std::find(by_.begin(), by_.end(), number);
+      return found == by_.end() ? S(value)
+                                : S::parameter(value, static_cast<std::size_t>(found - by_.begin()));
+    } else {
+      return number == by_mu_kinetic && kinetic_follows(design_) ? design_.mu_static : value;
+    }
+  }
+  Hoop<S> hoop(const Scene& scene) const {
+    if constexpr (has_derivatives<S>) {
+      std::array<S, without_slip> parameters;
+      for (std::size_t k = 0; k < parameters.size(); ++k) parameters[k] = parameter(k);
+      return reduce(parameters, scene);
+    } else {
+      return reduce<S>(design_, scene);
+    }
+  }
+
+ private:
+  const Design& design_;
+  std::span<const std::size_t> by_;
+};
 
 /// What moves in contact: angle, spin, travel, slip.
 template <class S>
@@ -91,17 +118,14 @@ Moving<S> integrated(const Moving<S>& from, double span, const Rate& rate, doubl
 template <class S>
 class Walk {
  public:
-  Walk(const Design& design, const Scene& scene, double accuracy)
+  Walk(const Seeded<S>& design, const Scene& scene, double accuracy)
       : accuracy_(accuracy),
-        hoop_(hoop_of_design(design, scene)),
-        contact_{parameter<S>(design, design.mu_static, by_mu_static),
-                 parameter<S>(design, kinetic_follows(design) ? design.mu_static : design.mu_kinetic,
-                              by_mu_kinetic),
-                 parameter<S>(design, design.restitution, by_restitution), S(scene.rest_speed)},
+        hoop_(design.hoop(scene)),
+        contact_{design.parameter(by_mu_static), design.parameter(by_mu_kinetic),
+                 design.parameter(by_restitution), S(scene.rest_speed)},
         budget_(accuracy < 1e-9 ? 20'000 : 3'000) {
     if (contact_.mu_static < contact_.mu_kinetic) contact_.mu_static = contact_.mu_kinetic;
-    at_ = {parameter<S>(design, design.release_angle, by_release_angle),
-           parameter<S>(design, design.release_spin, by_release_spin), S(0.0), S(0.0)};
+    at_ = {design.parameter(by_release_angle), design.parameter(by_release_spin), S(0.0), S(0.0)};
   }
 
   /// Goes through a phase from one time to another; take(time) is called at those between.
@@ -166,12 +190,6 @@ class Walk {
   }
 
  private:
-  static Hoop<S> hoop_of_design(const Design& design, const Scene& scene) {
-    if constexpr (has_derivatives<S>)
-      return reduce(dual_parameters<S>(design), scene);
-    else
-      return reduce<S>(design, scene);
-  }
   auto rate_of(Phase phase, int direction) const {
     return
         [this, rolls = phase == Phase::rolling,
@@ -246,8 +264,8 @@ class Walk {
 
 template <class S>
 std::vector<MotionAt<S>> motion_at(const Design& design, const Scene& scene, std::span<const double> times,
-                                   double accuracy) {
-  const double tolerance = 0.1 * accuracy;
+                                   double accuracy, std::span<const std::size_t> by) {
+  constexpr double tolerance = 1e-12;  // whatever the accuracy: a thread keeps its solver
   const Motion motion =
       need(model_of(scene), &Model::tell_exactly, "semi-analytic motion")(design, scene, tolerance, 0.0);
   std::vector<MotionAt<S>> taken;
@@ -257,7 +275,7 @@ std::vector<MotionAt<S>> motion_at(const Design& design, const Scene& scene, std
   std::vector<double> scaled;
   for (const double time : times) scaled.push_back(time / second);
   const std::span<const double> all = scaled;
-  Walk<S> walk(design, scene, accuracy);
+  Walk<S> walk(Seeded<S>(design, by), scene, accuracy);
   std::size_t next = 0, flight = 0;
   // Lift-offs that were flown: without slip a spurious one is rolled over.
   const std::size_t flights =
@@ -291,9 +309,11 @@ std::vector<MotionAt<S>> motion_at(const Design& design, const Scene& scene, std
   return taken;
 }
 
-template std::vector<MotionAt<double>> motion_at(const Design&, const Scene&, std::span<const double>,
-                                                 double);
+template std::vector<MotionAt<double>> motion_at(const Design&, const Scene&, std::span<const double>, double,
+                                                 std::span<const std::size_t>);
+template std::vector<MotionAt<FewDual>> motion_at(const Design&, const Scene&, std::span<const double>,
+                                                  double, std::span<const std::size_t>);
 template std::vector<MotionAt<DesignDual>> motion_at(const Design&, const Scene&, std::span<const double>,
-                                                     double);
+                                                     double, std::span<const std::size_t>);
 
 }  // namespace leapmap

@@ -19,6 +19,7 @@ namespace leapmap {
 template <class T, std::size_t N>
 struct Dual {
   using Scalar = ScalarOf<T>;
+  static constexpr std::size_t derivatives = N;
 
   T value = T(Scalar(0));
   std::array<T, N> by = zeros();  ///< derivatives, by each parameter
