@@ -119,12 +119,7 @@ std::vector<Place> sampled(Judge& judge, const Effort& effort, const FindOptions
                               });
     for (std::size_t rank = 0; rank < std::min(most, count); ++rank)
       best.push_back(place_of(places, verdicts, order[rank]));
-    if (fronts) {
-      std::vector<Place> feasible;
-      for (std::size_t i = 0; i < count; ++i)
-        if (verdicts[i].feasible()) feasible.push_back(place_of(places, verdicts, i));
-      fronts->add(std::move(feasible));
-    }
+    if (fronts) fronts->add(places, verdicts);
     std::ranges::stable_sort(best,
                              [](const Place& a, const Place& b) { return better(a.verdict, b.verdict); });
     if (best.size() > most) best.resize(most);
@@ -204,7 +199,7 @@ std::vector<Place> front_places(Judge& judge, const Effort& effort, const FindOp
   if (!best.front().verdict.feasible()) {
     improve(judge, best.front(), {.seed = options.seed});
     if (!best.front().verdict.feasible()) return best;
-    fronts.add(best);
+    fronts.add(best.front().at, {&best.front().verdict, 1});
   }
   fronts.thin(effort.front);
   refine(judge, fronts, effort.front, effort.sample / 32, options.seed);

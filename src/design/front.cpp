@@ -2,20 +2,72 @@
 #include "design/front.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <random>
-#include <set>
 #include <utility>
 
 namespace leapmap {
 
+namespace {
+
+const Cost& cost_of(const Place& place) { return place.verdict.cost; }
+
+/// Which of a front's designs to keep, so many: one after the other goes, whichever dominates least alone;
+/// its neighbours then dominate more. The ends stay.
+std::vector<bool> worth_most(std::span<const Cost> front, std::size_t most) {
+  const std::size_t count = front.size();
+  most = std::max<std::size_t>(most, 2);
+  std::vector<bool> kept(count, true);
+  if (count <= most) return kept;
+  std::vector<std::size_t> before(count), after(count);
+  for (std::size_t i = 0; i < count; ++i) before[i] = i - 1, after[i] = i + 1;
+  using Worth = std::pair<double, std::size_t>;
+  std::vector<Worth> heap;  // the least on top; what changed since is in it once more
+  std::vector<double> now(count);
+  const auto weigh = [&](std::size_t i) {
+    now[i] = (front[after[i]][0] - front[i][0]) * (front[before[i]][1] - front[i][1]);
+    heap.emplace_back(now[i], i);
+  };
+  for (std::size_t i = 1; i + 1 < count; ++i) weigh(i);
+  std::ranges::make_heap(heap, std::greater{});
+  for (std::size_t left = count; left > most;) {
+    const auto [worth, i] = heap.front();
+    std::ranges::pop_heap(heap, std::greater{});
+    heap.pop_back();
+    if (!kept[i] || worth != now[i]) continue;
+    kept[i] = false, --left;
+    const std::size_t b = before[i], a = after[i];
+    after[b] = a, before[a] = b;
+    for (const std::size_t neighbour : {b, a})
+      if (neighbour > 0 && neighbour + 1 < count)
+        weigh(neighbour), std::ranges::push_heap(heap, std::greater{});
+  }
+  return kept;
+}
+
+}  // namespace
+
+bool Front::takes(const Verdict& verdict) const {
+  if (!verdict.feasible()) return false;
+  const auto above = std::ranges::upper_bound(places_, verdict.cost[0], {},
+                                              [](const Place& place) { return place.verdict.cost[0]; });
+  return above == places_.begin() || verdict.cost[1] < std::prev(above)->verdict.cost[1];
+}
+
 void Front::add(std::vector<Place> places) {
-  std::erase_if(places, [](const Place& place) { return !place.verdict.feasible(); });
-  std::vector<Place> all = std::exchange(places_, {});
-  std::ranges::move(places, std::back_inserter(all));
-  std::ranges::stable_sort(all, {}, [](const Place& place) { return place.verdict.cost; });
+  std::erase_if(places, [&](const Place& place) { return !takes(place.verdict); });
+  if (places.empty()) return;
+  std::ranges::stable_sort(places, {}, cost_of);
+  std::vector<Place> all;
+  all.reserve(places_.size() + places.size());
+  std::ranges::merge(
+      std::ranges::subrange(std::move_iterator(places_.begin()), std::move_iterator(places_.end())),
+      std::ranges::subrange(std::move_iterator(places.begin()), std::move_iterator(places.end())),
+      std::back_inserter(all), {}, cost_of, cost_of);
+  places_.clear();
   double least = HUGE_VAL;
   for (Place& place : all)
     if (place.verdict.cost[1] < least) {
@@ -25,32 +77,12 @@ void Front::add(std::vector<Place> places) {
 }
 
 void Front::thin(std::size_t most) {
-  const std::size_t count = places_.size();
-  if (count <= std::max<std::size_t>(most, 2)) return;
-  // One place after the other, whichever dominates least alone; its neighbours then dominate more.
-  std::vector<std::size_t> before(count), after(count);
-  for (std::size_t i = 0; i < count; ++i) before[i] = i - 1, after[i] = i + 1;
-  const auto cost = [&](std::size_t i, std::size_t k) { return places_[i].verdict.cost[k]; };
-  const auto worth = [&](std::size_t i) {
-    return (cost(after[i], 0) - cost(i, 0)) * (cost(before[i], 1) - cost(i, 1));
-  };
-  std::set<std::pair<double, std::size_t>> order;
-  for (std::size_t i = 1; i + 1 < count; ++i) order.emplace(worth(i), i);
-  std::vector<bool> goes(count, false);
-  for (std::size_t left = count; left > std::max<std::size_t>(most, 2); --left) {
-    const std::size_t i = order.begin()->second, b = before[i], a = after[i];
-    order.erase(order.begin());
-    goes[i] = true;
-    for (const std::size_t neighbour : {b, a})
-      if (neighbour > 0 && neighbour + 1 < count) order.erase({worth(neighbour), neighbour});
-    after[b] = a, before[a] = b;
-    for (const std::size_t neighbour : {b, a})
-      if (neighbour > 0 && neighbour + 1 < count) order.emplace(worth(neighbour), neighbour);
-  }
-  std::vector<Place> kept;
-  for (std::size_t i = 0; i < count; ++i)
-    if (!goes[i]) kept.push_back(std::move(places_[i]));
-  places_ = std::move(kept);
+  if (places_.size() <= most) return;
+  std::vector<Cost> costs;
+  std::ranges::transform(places_, std::back_inserter(costs), cost_of);
+  const std::vector<bool> kept = worth_most(costs, most);
+  std::size_t next = 0;
+  std::erase_if(places_, [&](const Place&) { return !kept[next++]; });
 }
 
 double Front::hypervolume() const {
@@ -63,11 +95,29 @@ double Front::hypervolume() const {
   return volume / ((last[0] - first[0]) * (first[1] - last[1]));
 }
 
-void Fronts::add(std::vector<Place> places) {
+void Fronts::add(std::span<const double> places, std::span<const Verdict> verdicts) {
   std::map<std::uint64_t, std::vector<Place>> sorted;
-  for (Place& place : places)
-    if (place.verdict.feasible()) sorted[place.verdict.outcome].push_back(std::move(place));
+  for (std::size_t i = 0; i < verdicts.size(); ++i) {
+    if (!verdicts[i].feasible()) continue;
+    const auto there = fronts_.find(verdicts[i].outcome);
+    if (there == fronts_.end() || there->second.takes(verdicts[i]))
+      sorted[verdicts[i].outcome].push_back(place_of(places, verdicts, i));
+  }
   for (auto& [outcome, some] : sorted) fronts_[outcome].add(std::move(some));
+}
+
+std::vector<Cost> Fronts::costs_of_all() const {
+  std::vector<Cost> all;
+  for (const auto& [outcome, front] : fronts_)
+    std::ranges::transform(front.places(), std::back_inserter(all), cost_of);
+  std::ranges::sort(all);
+  double least = HUGE_VAL;
+  std::erase_if(all, [&](const Cost& cost) {
+    if (!(cost[1] < least)) return true;
+    least = cost[1];
+    return false;
+  });
+  return all;
 }
 
 void Fronts::thin(std::size_t most) {
@@ -81,25 +131,30 @@ Front Fronts::of_all() const {
 }
 
 void Fronts::leave_nearest(std::size_t most) {
-  Front all = of_all();
-  if (fronts_.size() <= most || all.places().size() < 2) return;
+  if (fronts_.size() <= most) return;
+  std::vector<Cost> all = costs_of_all();
+  if (all.size() < 2) return;
   constexpr std::size_t enough = 512;  // to tell how far a band is behind
-  all.thin(enough);
-  const auto &first = all.places().front().verdict.cost, &last = all.places().back().verdict.cost;
-  const std::array span{last[0] - first[0], first[1] - last[1]};
+  const std::vector<bool> kept = worth_most(all, enough);
+  std::size_t next = 0;
+  std::erase_if(all, [&](const Cost&) { return !kept[next++]; });
+  const Cost span{all.back()[0] - all.front()[0], all.front()[1] - all.back()[1]};
   // How far the front of all would have to move back for a place to be on it, in shares of its ends'
-  // distance.
-  const auto behind = [&](const Verdict& verdict) {
+  // distance. Along the front one cost falls behind ever less, the other ever more: where they meet is it.
+  const auto behind = [&](const Cost& cost) {
+    const auto first = [&](const Cost& on) { return (cost[0] - on[0]) / span[0]; };
+    const auto second = [&](const Cost& on) { return (cost[1] - on[1]) / span[1]; };
+    const auto meet =
+        std::ranges::partition_point(all, [&](const Cost& on) { return first(on) > second(on); });
     double most_behind = 0.0;
-    for (const Place& place : all.places())
-      most_behind = std::max(most_behind, std::min((verdict.cost[0] - place.verdict.cost[0]) / span[0],
-                                                   (verdict.cost[1] - place.verdict.cost[1]) / span[1]));
+    if (meet != all.begin()) most_behind = std::max(most_behind, second(*std::prev(meet)));
+    if (meet != all.end()) most_behind = std::max(most_behind, first(*meet));
     return most_behind;
   };
   std::vector<std::pair<double, std::uint64_t>> order;
   for (const auto& [outcome, front] : fronts_) {
     double nearest = HUGE_VAL;
-    for (const Place& place : front.places()) nearest = std::min(nearest, behind(place.verdict));
+    for (const Place& place : front.places()) nearest = std::min(nearest, behind(cost_of(place)));
     order.emplace_back(nearest, outcome);
   }
   std::ranges::sort(order);
@@ -108,6 +163,23 @@ void Fronts::leave_nearest(std::size_t most) {
 }
 
 namespace {
+
+/// What a front dominates of both costs up to those of a corner.
+double volume_of(std::span<const Cost> front, const Cost& corner) {
+  double volume = 0.0;
+  for (std::size_t i = 0; i < front.size() && front[i][0] < corner[0]; ++i) {
+    const double next = i + 1 < front.size() ? std::min(front[i + 1][0], corner[0]) : corner[0];
+    volume += (next - front[i][0]) * std::max(corner[1] - front[i][1], 0.0);
+  }
+  return volume;
+}
+
+/// A corner beyond both costs of a front.
+Cost corner_of(std::span<const Cost> front) {
+  constexpr double beyond = 0.1;
+  const Cost &first = front.front(), &last = front.back();
+  return {last[0] + beyond * (last[0] - first[0]), first[1] + beyond * (first[1] - last[1])};
+}
 
 /// A step by chance from a place of a front: along it as its neighbours lie, or any length in any direction.
 void step_from(const Front& front, bool along, bool off, std::mt19937_64& random, std::span<double> place) {
@@ -135,7 +207,17 @@ void refine(Judge& judge, Fronts& fronts, std::size_t most, std::size_t a_round,
   std::mt19937_64 random(seed);
   std::vector<double> places(a_round * dimensions);
   std::vector<Verdict> verdicts(a_round);
-  for (std::size_t round = 0; round < rounds && !fronts.by_outcome().empty(); ++round) {
+  // What so many rounds in a row bring no more, the next will not either. Gaps between a front's places are
+  // worth more than that.
+  constexpr double still = 1e-6;
+  constexpr std::size_t patience = 16;
+  const Cost corner = corner_of(fronts.costs_of_all());
+  std::vector<double> volumes;  // of the front of all, after each round
+  const auto is_still = [&] {
+    return volumes.size() > patience &&
+           volumes.back() < volumes[volumes.size() - 1 - patience] * (1.0 + still);
+  };
+  for (std::size_t round = 0; round < rounds && !is_still() && !fronts.by_outcome().empty(); ++round) {
     // Ever fewer bands: those that stay behind had their turn.
     fronts.leave_nearest(std::max<std::size_t>(24 >> (3 * round / rounds), 3));
     for (std::size_t i = 0; i < a_round;)
@@ -146,11 +228,9 @@ void refine(Judge& judge, Fronts& fronts, std::size_t most, std::size_t a_round,
                   std::span(places).subspan(i * dimensions, dimensions));
       }
     judge.judge(places, verdicts);
-    std::vector<Place> met;
-    for (std::size_t i = 0; i < a_round; ++i)
-      if (verdicts[i].feasible()) met.push_back(place_of(places, verdicts, i));
-    fronts.add(std::move(met));
+    fronts.add(places, verdicts);
     fronts.thin(2 * most);
+    volumes.push_back(volume_of(fronts.costs_of_all(), corner));
   }
 }
 

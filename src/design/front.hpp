@@ -2,17 +2,23 @@
 /// Pareto fronts of two objectives: designs than which no other is better in both.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <span>
 #include <vector>
 
 #include "design/improve.hpp"
 
 namespace leapmap {
 
+using Cost = std::array<double, 2>;
+
 class Front {
  public:
+  /// Whether a design is feasible and nothing here dominates it, or is as good.
+  bool takes(const Verdict& verdict) const;
   /// Keeps those that nothing here or among them dominates. Infeasible ones are left out.
   void add(std::vector<Place> places);
   /// Leaves out what adds least to the volume until there are no more than that; the ends stay.
@@ -31,18 +37,22 @@ class Front {
 /// whose first samples are dominated, and whose best designs are not.
 class Fronts {
  public:
-  void add(std::vector<Place> places);
+  /// places: a row of coordinates for each verdict.
+  void add(std::span<const double> places, std::span<const Verdict> verdicts);
   void thin(std::size_t most);
   /// Leaves those that are part of the front of all, and those that come nearest to it, so many.
   void leave_nearest(std::size_t most);
   Front of_all() const;
+  /// The costs of the front of all, in order of the first.
+  std::vector<Cost> costs_of_all() const;
   const std::map<std::uint64_t, Front>& by_outcome() const { return fronts_; }
 
  private:
   std::map<std::uint64_t, Front> fronts_;
 };
 
-/// Rounds of small steps from the fronts' places, along them and off them, so many a round.
+/// Rounds of small steps from the fronts' places, along them and off them, so many a round, until they bring
+/// nothing more.
 void refine(Judge& judge, Fronts& fronts, std::size_t most, std::size_t a_round, std::uint64_t seed);
 
 }  // namespace leapmap
