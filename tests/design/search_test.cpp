@@ -238,6 +238,16 @@ TEST(Fronts, KeepWhatNothingDominates) {
   EXPECT_DOUBLE_EQ(front.hypervolume(), (1 * 0 + 3 * 2) / 16.0);
 }
 
+TEST(Fronts, TakeWhatNothingThereIsAsGoodAs) {
+  const Front front = front_of({{0, 4}, {1, 2}, {4, 0}});
+  const auto takes = [&](double first, double second) {
+    return front.takes({.violation = 0.0, .cost = {first, second}});
+  };
+  EXPECT_TRUE(takes(-1, 5) && takes(0.5, 3) && takes(0, 3.9) && takes(5, -1));
+  EXPECT_FALSE(takes(0, 4) || takes(1, 2) || takes(1.5, 2) || takes(1, 2.1) || takes(5, 0));
+  EXPECT_FALSE(front.takes({.violation = 0.1, .cost = {-1, -1}})) << "misses a goal";
+}
+
 TEST(Fronts, ThinnedKeepTheirEndsAndWhatAddsMost) {
   Front front = front_of({{0, 4}, {0.1, 3.9}, {1, 1}, {2, 0.9}, {4, 0}});
   front.thin(3);
