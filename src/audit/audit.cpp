@@ -274,23 +274,37 @@ Solver solver_by_proof(const Spec& spec) {
   };
 }
 
-/// The first jump of the spec's designs, all of it, by the method that audits.
+bool stores_way(const Spec& spec) {
+  return std::ranges::any_of(map_fields(),
+                             [&](const Field& field) { return field.of_way && stores(spec.output, field); });
+}
+
+/// The first jump of the spec's designs by the method that audits; its way, too, if the map stores that.
 Solver second_solver(const Spec& spec, double tolerance) {
   if (spec.numerics.audit_by == "proof") return solver_by_proof(spec);
   Request request{.scene = spec.scene,
                   .numerics = {.method = audit_method(spec.numerics, spec.scene), .tolerance = tolerance}};
   request.scene.jumps = 1, request.scene.settle = 0;
   request.columns = fields_of(request.scene);
+  if (!stores_way(spec)) std::erase_if(request.columns, [](const Field* field) { return field->of_way; });
   return make_solver(request);
 }
 
 Solver solver_by_referee(const Spec& spec, double tolerance) {
   const auto referee = std::make_shared<referee::Referee>(spec.scene, tolerance);
-  referee->meets_forces = std::ranges::any_of(
-      map_fields(), [&](const Field& field) { return field.of_way && stores(spec.output, field); });
+  referee->meets_forces = stores_way(spec);
   return [referee](std::span<const Design> designs, std::span<Outcome> outcomes) {
     std::ranges::transform(designs, outcomes.begin(), [&](const Design& d) { return referee->solve(d); });
     resize(designs, outcomes);
+  };
+}
+
+/// Made when it is first asked: most audits ask no coarser one.
+Solver made_late(std::function<Solver()> make) {
+  return [make = std::move(make), solve = Solver()](std::span<const Design> designs,
+                                                    std::span<Outcome> outcomes) mutable {
+    if (!solve) solve = make();
+    solve(designs, outcomes);
   };
 }
 
@@ -299,8 +313,10 @@ Solver solver_by_referee(const Spec& spec, double tolerance) {
 Auditor::Auditor(const Spec& spec, std::size_t referee_every)
     : spec_(spec),
       space_(spec),
-      second_{second_solver(spec, audit_tolerance), second_solver(spec, coarser_tolerance)},
-      referee_{solver_by_referee(spec, audit_tolerance), solver_by_referee(spec, coarser_tolerance)},
+      second_{second_solver(spec, audit_tolerance),
+              made_late([&spec] { return second_solver(spec, coarser_tolerance); })},
+      referee_{made_late([&spec] { return solver_by_referee(spec, audit_tolerance); }),
+               made_late([&spec] { return solver_by_referee(spec, coarser_tolerance); })},
       gradients_(spec),
       sequences_(spec, begin_audit(spec).allowed_error),
       gaits_(spec, begin_audit(spec).allowed_error),

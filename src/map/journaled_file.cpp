@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
 #include "leapmap/errors.hpp"
 #include "support/file_calls.hpp"
@@ -133,18 +134,25 @@ void JournaledFile::read(std::uint64_t offset, std::span<std::byte> bytes) const
   });
 }
 
+bool JournaledFile::differs(std::uint64_t offset, std::span<const std::byte> bytes) const {
+  std::vector<std::byte> there(bytes.size());
+  read(offset, there);
+  return !std::ranges::equal(there, bytes);
+}
+
 void JournaledFile::write(std::uint64_t offset, std::span<const std::byte> bytes) {
   if (abandoned_) return;
   attempt([&] {
     const std::uint64_t guarded = std::max(committed_, signature_bytes);
     if (offset < guarded) {
       const auto waits = bytes.first(std::min<std::uint64_t>(bytes.size(), guarded - offset));
-      waiting_.push_back({offset, {waits.begin(), waits.end()}});
+      if (!waiting_.empty() || differs(offset, waits)) waiting_.push_back({offset, {waits.begin(), waits.end()}});
       bytes = bytes.subspan(waits.size());
       offset += waits.size();
     }
     if (bytes.empty()) return;
     seal_.reset();  // it is overwritten
+    appended_ = true;
     write_all(descriptor_, path_, offset, bytes);
     stored_ = std::max(stored_, offset + bytes.size());
   });
@@ -152,8 +160,10 @@ void JournaledFile::write(std::uint64_t offset, std::span<const std::byte> bytes
 
 void JournaledFile::commit() {
   if (abandoned_) return;
+  if (!appended_ && waiting_.empty() && size_ == committed_) return;  // nothing has changed
   attempt([&] {
-    sync(descriptor_, path_);  // what was appended has to be there before anything refers to it
+    // What was appended has to be there before anything refers to it.
+    if (std::exchange(appended_, false)) sync(descriptor_, path_);
     const bool first = committed_ == 0;
     if (!waiting_.empty()) {
       write_journal(descriptor_, path_, std::max(size_, stored_), size_, waiting_);

@@ -88,6 +88,8 @@ class JournaledFile {
   void open(Locking locking);
   void lock(Locking locking) const;
   void make_waiting_writes();
+  /// Whether a write would change anything: HDF5 writes the same head again as it closes a file.
+  bool differs(std::uint64_t offset, std::span<const std::byte> bytes) const;
 
   std::string path_;
   Access access_;
@@ -97,6 +99,7 @@ class JournaledFile {
   std::uint64_t size_ = 0;             ///< bytes it is to have after the next commit
   std::vector<WaitingWrite> waiting_;  ///< in the order they came
   std::optional<Seal> seal_;           ///< what ends the file on disk
+  bool appended_ = false;              ///< since the last commit
   bool abandoned_ = false;
   bool journal_valid_ = false;  ///< the journal on disk is whole and must not be cut off
   mutable bool failed_ = false;

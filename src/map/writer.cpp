@@ -205,8 +205,8 @@ bool MapWriter::finish(std::span<const hdf5::Attribute> attributes) {
   });
 }
 
-void MapWriter::keep() {
-  commit();
+void MapWriter::keep(std::span<const hdf5::Attribute> attributes) {
+  commit(attributes);
   close_datasets();
   file_.close();
   file_ = {};

@@ -64,7 +64,7 @@ class MapWriter {
   /// not what was written, IoError.
   [[nodiscard]] bool finish(std::span<const hdf5::Attribute> attributes);
   /// Commits and closes the unfinished file, which stays FILE.part.
-  void keep();
+  void keep(std::span<const hdf5::Attribute> attributes);
 
   /// The unfinished file, to be read while this writer lives.
   MapReader reader() const { return MapReader(part_, file_, Accept::shards_too); }

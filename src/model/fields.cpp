@@ -266,6 +266,7 @@ std::vector<const Field*> fields_of(const Scene& scene) {
   std::vector<const Field*> all;
   for (const Field& field : fields)
     if (has(scene, field)) all.push_back(&field);
+  if (scene.jumps == 1) return all;  // the table of later jumps takes a megabyte
   for (const Field& field : jump_fields())
     if (has(scene, field)) all.push_back(&field);
   return all;

@@ -58,7 +58,11 @@ class Sweeping {
     tell_progress();
     EngineOptions engine{options_.threads, writer_.progress().tiles, options_.stop_requested};
     run_sweep(spec_, request_of(spec_), tiling_, engine, [&] { return work(); });
-    commit();
+    put_seconds();
+  }
+  /// Of what was solved so far.
+  std::vector<hdf5::Attribute> attributes() const {
+    return audit_ ? audit_attributes(*audit_) : std::vector<hdf5::Attribute>{};
   }
 
   const std::optional<AuditReport>& audit() const { return audit_; }
@@ -121,10 +125,13 @@ class Sweeping {
     if (seconds_since(last_commit_) >= options_.commit_interval) commit();
   }
 
-  void commit() {
+  void put_seconds() {
     seconds_ = seconds_since(begin_);
     writer_.set_seconds(seconds_before_ + seconds_);
-    writer_.commit(audit_ ? audit_attributes(*audit_) : std::vector<hdf5::Attribute>{});
+  }
+  void commit() {
+    put_seconds();
+    writer_.commit(attributes());
     last_commit_ = SteadyClock::now();
   }
 
@@ -160,9 +167,9 @@ Report fill(const Spec& spec, const MapLayout& layout, const Tiling& tiling, con
   report.audit = sweeping.audit();
   report.whole = writer.progress().tiles == tiling.size();
   if (report.whole)
-    report.durable = writer.finish({});
+    report.durable = writer.finish(sweeping.attributes());
   else
-    writer.keep();
+    writer.keep(sweeping.attributes());
   return report;
 }
 
