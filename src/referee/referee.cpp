@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "referee/largest.hpp"
 #include "referee/robot.hpp"
 
 namespace leapmap::referee {
@@ -83,40 +84,14 @@ bool Referee::follow(const Mode& mode, const std::vector<Guard>& guards,
   }
 }
 
-/// Looks at a step in equal parts, and closes in on the largest force, spin and power by thirds.
 void Referee::meet(const Mode& mode, double end) {
-  constexpr int parts = 8;
-  struct Look {
-    double force, speed, power;
-  };
-  const auto look = [&](double tau) {
-    Y y = integrator_.step().y0;
-    if (tau > 0.0) integrator_.retake(tau, y);
-    const Motion at = motion_of(y);
-    const Look here{forces_of(system_.body, mode, at).normal, std::abs(at.spin),
-                    system_.body.motor * at.spin};
-    force_ = std::max(force_, here.force), spin_ = std::max(spin_, here.speed);
-    power_ = std::max(power_, here.power);
-    return here;
-  };
-  std::array<Look, parts + 1> looks;
-  for (int k = 0; k <= parts; ++k) looks[static_cast<std::size_t>(k)] = look(end * k / parts);
-  const auto close_in = [&](double Look::*of) {
-    const auto best = std::ranges::max_element(looks, {}, of) - looks.begin();
-    double low = end * static_cast<double>(std::max<std::ptrdiff_t>(best - 1, 0)) / parts,
-           high = end * static_cast<double>(std::min<std::ptrdiff_t>(best + 1, parts)) / parts;
-    while (high - low > 1e-7 * end) {
-      const double third = (high - low) / 3.0;
-      if (look(low + third).*of < look(high - third).*of)
-        low += third;
-      else
-        high -= third;
-    }
-  };
-  const auto most = [&](double Look::*of) { return std::ranges::max(looks, {}, of).*of; };
-  if (most(&Look::force) > 0.8 * force_) close_in(&Look::force);
-  if (most(&Look::speed) > 0.99 * spin_) close_in(&Look::speed);
-  if (most(&Look::power) > power_ - 0.01 * std::abs(power_)) close_in(&Look::power);
+  raise_to_largest(
+      integrator_, end,
+      [&](const Y& y) -> Met {
+        const Motion at = motion_of(y);
+        return {forces_of(system_.body, mode, at).normal, std::abs(at.spin), system_.body.motor * at.spin};
+      },
+      std::array{&Met::force, &Met::spin, &Met::power}, met_);
 }
 
 Outcome Referee::solve(const Design& design) {
@@ -129,7 +104,7 @@ Outcome Referee::solve(const Design& design) {
   wall_ = scene_.clear_height_in_metres ? scene_.clear_height / design.size
                                         : 2.0 * scene_.radius * scene_.clear_height;
   steps_ = 0;
-  force_ = spin_ = 0.0, power_ = system_.body.motor * at_.spin;
+  met_ = {0.0, 0.0, system_.body.motor * at_.spin};
   outcome_ = {};
   return scene_.friction == Friction::coulomb ? solve_coulomb(design) : solve_sticking();
 }
@@ -155,9 +130,9 @@ bool Referee::count_lift_off(const Flown& flown) {
   outcome_.dip = flown.dip / diameter;
   if (meets_forces) {
     const double weight = system_.body.mass() * system_.body.g;
-    outcome_.max_normal_force = force_ / weight;
-    outcome_.motor_max_spin = spin_ * second_;
-    outcome_.motor_max_power = power_ * second_ / (weight * scene_.radius);
+    outcome_.max_normal_force = met_.force / weight;
+    outcome_.motor_max_spin = met_.spin * second_;
+    outcome_.motor_max_power = met_.power * second_ / (weight * scene_.radius);
   }
   return true;
 }

@@ -63,8 +63,11 @@ class Referee {
   Motion at_{};        ///< where the hoop is
   double time_ = 0.0;  ///< since release [s]
   Outcome outcome_;
-  double force_ = 0.0, spin_ = 0.0, power_ = 0.0;  ///< the largest so far, of solve
-  double wall_ = 0.0;                              ///< height of the wall to clear [m]
+  struct Met {
+    double force = 0.0, spin = 0.0, power = 0.0;
+  };
+  Met met_;            ///< the largest so far, of solve
+  double wall_ = 0.0;  ///< height of the wall to clear [m]
 };
 
 }  // namespace leapmap::referee

@@ -154,8 +154,8 @@ class Referee::Slipping {
     if (!jumps && referee_.meets_forces) {  // a hop: its spin may be the largest, whoever turns it
       const double ends = at_.spin + body_.turn * flown.landing_time;
       for (const double spin : {at_.spin, ends}) {
-        referee_.spin_ = std::max(referee_.spin_, std::abs(spin));
-        if (body_.turn != 0.0) referee_.power_ = std::max(referee_.power_, body_.motor * spin);
+        referee_.met_.spin = std::max(referee_.met_.spin, std::abs(spin));
+        if (body_.turn != 0.0) referee_.met_.power = std::max(referee_.met_.power, body_.motor * spin);
       }
     }
     if (jumps) outcome_.energy_lost = (released_ + driven_ - energy(body_, at_)) / (weight * R);

@@ -12,6 +12,7 @@
 
 #include "integrate/guarded_steps.hpp"
 #include "numerics/gsl_integrator.hpp"
+#include "referee/largest.hpp"
 #include "referee/robot.hpp"
 
 namespace leapmap::referee {
@@ -235,31 +236,10 @@ class Run {
     return {forces.normal, forces.torque * speed, std::abs(speed), std::abs(forces.torque)};
   }
 
-  /// Looks at a step in equal parts, and closes in on the largest of each by thirds.
   void meet(const GslIntegrator<9>& integrator, double end) {
-    constexpr int parts = 16;
-    const auto look = [&](double tau) -> Look {
-      Y y = integrator.step().y0;
-      if (tau > 0.0) integrator.retake(tau, y);
-      return look_at(motion_of(y));
-    };
-    std::array<Look, parts + 1> looks;
-    for (int k = 0; k <= parts; ++k) looks[static_cast<std::size_t>(k)] = look(end * k / parts);
-    for (double Look::*of : {&Look::force, &Look::power, &Look::speed, &Look::torque}) {
-      const auto best = std::ranges::max_element(looks, {}, of) - looks.begin();
-      const double seen = looks[static_cast<std::size_t>(best)].*of;
-      const bool may_be_largest = seen > way_.*of - 0.05 * (std::abs(way_.*of) + std::abs(seen));
-      way_.*of = std::max(way_.*of, seen);
-      if (!may_be_largest) continue;
-      double low = end * static_cast<double>(std::max<std::ptrdiff_t>(best - 1, 0)) / parts,
-             high = end * static_cast<double>(std::min<std::ptrdiff_t>(best + 1, parts)) / parts;
-      while (high - low > 1e-7 * end) {
-        const double third = (high - low) / 3.0;
-        (look(low + third).*of < look(high - third).*of ? low : high) =
-            look(low + third).*of < look(high - third).*of ? low + third : high - third;
-      }
-      way_.*of = std::max(way_.*of, look(0.5 * (low + high)).*of);
-    }
+    raise_to_largest(
+        integrator, end, [&](const Y& y) { return look_at(motion_of(y)); },
+        std::array{&Look::force, &Look::power, &Look::speed, &Look::torque}, way_);
   }
 
   // Flights.

@@ -85,7 +85,7 @@ TEST(MapFile, AKeptPartShowsItsHolesAsNotComputed) {
   MapWriter writer = MapWriter::begin(folder / "map.h5", layout, tiling, small_attributes, false);
   writer.write(testing::numbered_tile(layout, tiling, 0));
   EXPECT_THROW(MapReader(folder / "map.h5.part"), InputError) << "nobody reads what is being written";
-  writer.keep();
+  writer.keep({});
   const MapReader map(folder / "map.h5.part");
   EXPECT_FALSE(map.is_whole());
   const Tile whole{{0, 0}, {3, 5}, 15};

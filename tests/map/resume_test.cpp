@@ -102,7 +102,7 @@ TEST(Resume, APartCutAtAnyByteIsGoneOnWithOrRefused) {
   {
     MapWriter writer = begin(path);
     for (std::size_t t = 0; t < 5; ++t) writer.write(testing::numbered_tile(layout, tiling, t));
-    writer.keep();
+    writer.keep({});
   }
   const std::string whole = text_of(part);
   std::size_t refused = 0, cuts = 0;
@@ -136,7 +136,7 @@ TEST(Resume, ATileThatIsNotWhatWasWrittenIsRefused) {
   {
     MapWriter writer = begin(path);
     writer.write(testing::numbered_tile(layout, tiling, 0));
-    writer.keep();
+    writer.keep({});
     const hdf5::File file = hdf5::File::open(part);
     const hdf5::Handle dataset(H5Dopen2(file, "jump_height", H5P_DEFAULT), H5Dclose, "");
     hsize_t size = 0, place[2] = {};
