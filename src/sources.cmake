@@ -180,6 +180,7 @@ set(LEAPMAP_SOURCES
   src/sweep/retry.cpp
   src/sweep/sweep.cpp
   src/tolerance/made_hoops.cpp
+  src/tolerance/made_line.cpp
   src/tolerance/made_sample.cpp
   src/tolerance/scatter_solver.cpp
   src/trajectory/clearance.cpp

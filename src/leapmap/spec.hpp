@@ -71,6 +71,9 @@ struct Scatter {
   std::vector<Spread> spreads{};  ///< at most one for each parameter; empty: all hoops are nominal
   long samples = 1024;            ///< number of manufactured hoops per design, a multiple of 16
   long seed = 1;                  ///< equal seeds give equal hoops
+  /// With friction: a map solves some hoops made after neighbouring designs, and interpolates those between
+  /// where no discontinuity is near. Else all are solved.
+  bool interpolate = true;
 };
 
 /// A goal: the range in which a field of the outcome must lie, in the map's unit, in SI or by its code.

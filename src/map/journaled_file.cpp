@@ -146,7 +146,8 @@ void JournaledFile::write(std::uint64_t offset, std::span<const std::byte> bytes
     const std::uint64_t guarded = std::max(committed_, signature_bytes);
     if (offset < guarded) {
       const auto waits = bytes.first(std::min<std::uint64_t>(bytes.size(), guarded - offset));
-      if (!waiting_.empty() || differs(offset, waits)) waiting_.push_back({offset, {waits.begin(), waits.end()}});
+      if (!waiting_.empty() || differs(offset, waits))
+        waiting_.push_back({offset, {waits.begin(), waits.end()}});
       bytes = bytes.subspan(waits.size());
       offset += waits.size();
     }

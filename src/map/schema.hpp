@@ -30,6 +30,6 @@ inline constexpr int format_major = 1;  ///< readers refuse a newer one
 /// made; 9: later jumps; 10: their audit, and gaits'; 11: shards; 12: measures of jumps; 13: [hoop], motors
 /// in flight; 14: derivatives by numbers of [hoop]; 15: resisting torques;
 /// 16: parameters in the units of the nominal hoop; 17: proofs; 18: pendulums.
-inline constexpr int format_minor = 18;
+inline constexpr int format_minor = 19;
 
 }  // namespace leapmap

@@ -37,7 +37,14 @@ Tiling tiling_of(const Spec& spec) {
     return Tiling(shape, std::clamp<std::size_t>(designs / 512, 128, 2048));
   }
   constexpr std::size_t most_hoops = 1 << 20;  // of a tile: some tenths of a second, with friction seconds
-  return Tiling(shape, std::max<std::size_t>(most_hoops / static_cast<std::size_t>(spec.scatter.samples), 1));
+  const std::size_t most =
+      std::max<std::size_t>(most_hoops / static_cast<std::size_t>(spec.scatter.samples), 1);
+  if (!model_of(spec.scene).slips) return Tiling(shape, most);
+  // Along the last axis as long as can be: hoops made after lines of drawings are interpolated.
+  std::vector<std::size_t> lines(shape.size(), 1);
+  std::size_t left = std::min(most, std::max<std::size_t>(designs_of(shape) / 64, 64));
+  for (std::size_t k = shape.size(); k-- > 0;) left /= lines[k] = std::min(shape[k], left);
+  return Tiling(shape, lines);
 }
 
 const Axis* find_varying(const Spec& spec, std::string_view key) {

@@ -290,6 +290,14 @@ const std::array other_keys{
            "1",
            "seed of the manufactured hoops",
            {0, 1e15}},
+    Option{
+        "scatter",
+        "interpolate",
+        SwitchSlot{[](Spec& s) -> bool& { return s.scatter.interpolate; }},
+        "",
+        "whether a map with friction solves some hoops and interpolates those between; else all are solved",
+        {},
+        switch_words},
 };
 
 constexpr double infinity = std::numeric_limits<double>::infinity();

@@ -499,6 +499,10 @@ Spec parse(std::string_view text, const std::string& origin, const std::vector<s
   // Before format 1.13 a resolved spec did not say so: motors idled.
   if (lenient && std::ranges::find(entries, "motor_in_flight", &Entry::key) == entries.end())
     spec.scene.motor_in_flight = false;
+  // Before 1.19 every hoop was solved.
+  if (lenient && !spec.scatter.spreads.empty() &&
+      std::ranges::find(entries, "interpolate", &Entry::key) == entries.end())
+    spec.scatter.interpolate = false;
   return spec;
 }
 

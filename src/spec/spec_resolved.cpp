@@ -43,6 +43,7 @@ std::string text_of(const Axis& axis, bool spaced) {
 
 /// The value of an option; unset: its line is left out.
 std::optional<std::string> value_of(const Option& option, Spec& spec) {
+  if (option.section == "scatter" && spec.scatter.spreads.empty()) return std::nullopt;
   return std::visit(
       [&](const auto& slot) -> std::optional<std::string> {
         using Slot = std::decay_t<decltype(slot)>;
@@ -71,7 +72,6 @@ std::optional<std::string> value_of(const Option& option, Spec& spec) {
           if (goal == spec.goals.end()) return std::nullopt;
           return leapmap::text_of(*goal);
         } else if constexpr (std::is_same_v<Slot, IntegerSlot>) {
-          if (option.section == "scatter" && spec.scatter.spreads.empty()) return std::nullopt;
           return fmt::format("{}", slot(spec));
         } else if constexpr (std::is_same_v<Slot, TextSlot>) {
           if (slot(spec).empty()) return std::nullopt;

@@ -33,12 +33,23 @@ std::shared_ptr<const SobolPoints> points_of(const Scatter& scatter, std::size_t
 ScatterSolver::ScatterSolver(const Scatter& scatter, const std::optional<Body>& hoop,
                              std::vector<SameInSi> held, std::shared_ptr<const SobolPoints> points,
                              const std::vector<Goal>& goals, const std::vector<const Field*>& quantities,
-                             Solver solver)
+                             Solver solver, bool interpolates)
     : hoops_(scatter, hoop, std::move(held), std::move(points)),
       solver_(std::move(solver)),
       tally_(goals, quantities, hoops_.samples()),
       made_(std::min(made_at_once, hoops_.samples())),
-      outcomes_(made_.size()) {}
+      outcomes_(made_.size()) {
+  if (!interpolates) return;
+  std::vector<double Outcome::*> numbers;
+  const auto add = [&](const Field* field) {
+    const auto* quantity = std::get_if<Quantity>(&field->source);
+    if (quantity && std::find(numbers.begin(), numbers.end(), quantity->member) == numbers.end())
+      numbers.push_back(quantity->member);
+  };
+  for (const Field* field : quantities) add(field);
+  for (const Goal& goal : goals) add(find_field(goal.field));
+  line_.emplace(std::move(numbers));
+}
 
 double ScatterSolver::tell(const OfMade& what) {
   if (what.statistic == Statistic::cut_off) return cut_off_;
@@ -65,29 +76,70 @@ bool wants_worst(const MadeColumns& columns) {
 
 }  // namespace
 
+void ScatterSolver::solve_one(const Design& drawn, const Body* body) {
+  tally_.clear();
+  worst_ = HUGE_VAL;
+  cut_off_ = hoops_.draw(drawn, body);
+  for (std::size_t first = 0; first < hoops_.samples(); first += made_.size()) {
+    const std::size_t count = std::min(made_.size(), hoops_.samples() - first);
+    hoops_.fill(first, std::span(made_).first(count));
+    solver_(std::span(made_).first(count), std::span(outcomes_).first(count));
+    for (std::size_t k = 0; k < count; ++k)
+      tally_.add(made_[k], outcomes_[k], (first + k) / hoops_.a_replicate());
+    note_worst(std::span(outcomes_).first(count));
+  }
+}
+
+void ScatterSolver::take_from_line(std::size_t number, const Design& drawn) {
+  tally_.clear();
+  worst_ = HUGE_VAL;
+  cut_off_ = hoops_.draw(drawn);
+  for (std::size_t first = 0; first < hoops_.samples(); first += made_.size()) {
+    const std::size_t count = std::min(made_.size(), hoops_.samples() - first);
+    hoops_.fill(first, std::span(made_).first(count));
+    for (std::size_t k = 0; k < count; ++k) {
+      outcomes_[k] = line_->outcome(number, first + k);
+      tally_.add(made_[k], outcomes_[k], (first + k) / hoops_.a_replicate());
+      const auto met = line_->met_by_chance(number, first + k);
+      if (met && tally_.reaches_all(made_[k], outcomes_[k]) != tally_.reaches_all(made_[k], met->instead))
+        tally_.note_passed_over(met->others);
+    }
+    note_worst(std::span(outcomes_).first(count));
+  }
+}
+
+void ScatterSolver::solve_corners() {
+  hoops_.corners(corners_);
+  at_corners_.resize(corners_.size());
+  solver_(corners_, at_corners_);
+  note_worst(at_corners_);
+}
+
 void ScatterSolver::solve(std::span<const Design> designs, MadeColumns& columns,
                           std::span<const Body> bodies) {
   columns.begin(designs.size());
-  for (std::size_t i = 0; i < designs.size(); ++i) {
-    tally_.clear();
-    cut_off_ = hoops_.draw(designs[i], bodies.empty() ? nullptr : &bodies[i]);
-    for (std::size_t first = 0; first < hoops_.samples(); first += made_.size()) {
-      const std::size_t count = std::min(made_.size(), hoops_.samples() - first);
-      hoops_.fill(first, std::span(made_).first(count));
-      solver_(std::span(made_).first(count), std::span(outcomes_).first(count));
-      for (std::size_t k = 0; k < count; ++k)
-        tally_.add(made_[k], outcomes_[k], (first + k) / hoops_.a_replicate());
-      if (first == 0) worst_ = HUGE_VAL;
-      note_worst(std::span(outcomes_).first(count));
-    }
-    if (wants_worst(columns)) {
-      hoops_.corners(corners_);
-      at_corners_.resize(corners_.size());
-      solver_(corners_, at_corners_);
-      note_worst(at_corners_);
-    }
+  const bool worst = wants_worst(columns);
+  const auto put = [&](std::size_t i) {
+    if (worst) solve_corners();
     for (std::size_t f = 0; f < columns.fields().size(); ++f)
       columns.put(f, i, tell(std::get<OfMade>(columns.fields()[f]->source)));
+  };
+  for (std::size_t i = 0; i < designs.size();) {
+    DrawnLine line = line_ && bodies.empty() ? line_of(designs.subspan(i)) : DrawnLine{};
+    const std::size_t end = i + line.count;
+    if (line.count < DrawnLine::least) {
+      for (; i < end; ++i) {
+        solve_one(designs[i], bodies.empty() ? nullptr : &bodies[i]);
+        put(i);
+      }
+      continue;
+    }
+    const std::span drawings = designs.subspan(i, line.count);
+    line_->solve(drawings, std::move(line), hoops_, solver_);
+    for (std::size_t j = 0; j < drawings.size(); ++j, ++i) {
+      take_from_line(j, drawings[j]);
+      put(i);
+    }
   }
 }
 

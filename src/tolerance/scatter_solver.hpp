@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tolerance/made_hoops.hpp"
+#include "tolerance/made_line.hpp"
 #include "tolerance/made_sample.hpp"
 #include "trajectory/solver.hpp"
 
@@ -40,9 +41,10 @@ class MadeColumns {
 class ScatterSolver {
  public:
   /// quantities: of which the columns are, besides shares; solver: tells these and what the goals are of.
+  /// interpolates: hoops made after lines of drawings may be interpolated.
   ScatterSolver(const Scatter& scatter, const std::optional<Body>& hoop, std::vector<SameInSi> held,
                 std::shared_ptr<const SobolPoints> points, const std::vector<Goal>& goals,
-                const std::vector<const Field*>& quantities, Solver solver);
+                const std::vector<const Field*>& quantities, Solver solver, bool interpolates = false);
   bool can_make(const Design& drawn, const Body* body = nullptr) const {
     return hoops_.can_make(drawn, body);
   }
@@ -53,6 +55,10 @@ class ScatterSolver {
  private:
   double tell(const OfMade& what);
   void note_worst(std::span<const Outcome> outcomes);
+  void solve_corners();
+  void solve_one(const Design& drawn, const Body* body);
+  /// Of a drawing of the line that was solved.
+  void take_from_line(std::size_t number, const Design& drawn);
 
   MadeHoops hoops_;
   Solver solver_;
@@ -63,6 +69,7 @@ class ScatterSolver {
   double worst_ = 0.0;  // least height of the hoops in hand, 0 where one does not jump
   std::vector<Design> corners_;
   std::vector<Outcome> at_corners_;
+  std::optional<MadeLine> line_;
 };
 
 }  // namespace leapmap

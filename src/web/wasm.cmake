@@ -25,7 +25,7 @@ if(LEAPMAP_EMCC AND BOOST_INCLUDE_DIR)
     noslip/dual_jump noslip/find noslip/gradient noslip/halved_time noslip/leg noslip/prepare
     noslip/rolling_motion noslip/rolling_time noslip/take_off leapmap/outcome gaits/error_growth
     gaits/return_map gaits/settle numerics/sobol_points tolerance/made_hoops tolerance/made_sample
-    tolerance/scatter_solver)
+    tolerance/made_line tolerance/scatter_solver)
   # All in four units, as most of the time goes into reading headers.
   foreach(part ${parts})
     list(FIND parts ${part} number)

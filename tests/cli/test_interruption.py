@@ -13,7 +13,7 @@ from support.program import PROGRAM
 LONG = """
 [design]
 slope = { from = "2 deg", to = "50 deg", count = 200 }
-mass_ratio = { from = 0.1, to = 20, count = 300, scale = "log" }
+mass_ratio = { from = 0.1, to = 20, count = 1200, scale = "log" }
 [numerics]
 tolerance = 1e-13
 method = "gsl-rk4"
@@ -61,7 +61,7 @@ def test_an_interrupted_shard_says_how_to_go_on_with_it(tmp_path):
 
 def test_a_signal_during_the_audit_is_an_interruption_too(tmp_path):
     (tmp_path / "spec.toml").write_text(
-        LONG.replace("audit = 0", "audit = 1").replace("gsl-rk4", "exact").replace("300", "3000"))
+        LONG.replace("audit = 0", "audit = 1").replace("gsl-rk4", "exact").replace("1200", "3000"))
     process = subprocess.Popen([PROGRAM, "sweep", tmp_path / "spec.toml", "-o", tmp_path / "map.h5"],
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     time.sleep(4.0)  # solving takes less than a second, auditing by integration twenty and more

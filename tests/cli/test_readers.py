@@ -63,7 +63,7 @@ def test_root_attributes_tell_where_the_map_comes_from(grid):
     with h5py.File(grid) as m:
         a = m.attrs
         assert a["filetype"] == "leapmap map" and a["Conventions"].startswith("CF-")
-        assert list(a["version"]) == [1, 18]
+        assert list(a["version"]) == [1, 19]
         for name in ("title", "program_version", "git_revision", "spec", "date", "host", "method"):
             assert isinstance(a[name], str) and a[name], name
         assert a["method"] == "exact" and a["tolerance"] == 1e-10 and a["threads"] >= 1 and a["wall_time"] > 0

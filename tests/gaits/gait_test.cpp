@@ -20,7 +20,7 @@
 namespace leapmap {
 namespace {
 
-using State = ContactState<long double>;
+using LongState = ContactState<long double>;
 
 constexpr Scene unit{.runway = 50.0, .radius = 1.0, .gravity = 1.0};
 #ifdef __SANITIZE_ADDRESS__
@@ -40,17 +40,18 @@ JumpSolver<long double> jumps_in_long_double(Scene scene) {
   if (scene.friction == Friction::coulomb)
     return jumps_one_by_one<long double>(std::make_shared<CoulombSolver<long double>>(1e-15), scene);
   return [solver = std::make_shared<ExactSolver<long double>>(1e-15), scene](
-             Start start, std::span<const Design> designs, std::span<State> states,
+             Start start, std::span<const Design> designs, std::span<LongState> states,
              std::span<Outcome> outcomes) { solver->solve(start, designs, states, scene, outcomes); };
 }
 
-State without_turns(const State& at) {
+LongState without_turns(const LongState& at) {
   constexpr long double two_pi = 2.0L * std::numbers::pi_v<long double>;
   return {.angle = std::remainder(at.angle, two_pi), .spin = at.spin, .slip = at.slip, .normal = at.normal};
 }
 
 /// Some jumps on; false: it makes fewer.
-bool jump_on(const JumpSolver<long double>& jumps, const Design& design, State& at, long count, Start start) {
+bool jump_on(const JumpSolver<long double>& jumps, const Design& design, LongState& at, long count,
+             Start start) {
   for (long k = 0; k < count; ++k) {
     Outcome outcome;
     jumps(k == 0 ? start : Start::landing, {&design, 1}, {&at, 1}, {&outcome, 1});
@@ -60,7 +61,7 @@ bool jump_on(const JumpSolver<long double>& jumps, const Design& design, State& 
   return true;
 }
 
-long double distance(const State& a, const State& b) {
+long double distance(const LongState& a, const LongState& b) {
   return std::max({std::abs(std::remainder(a.angle - b.angle, 2.0L * std::numbers::pi_v<long double>)),
                    std::abs(a.spin - b.spin), std::abs(a.slip - b.slip), std::abs(a.normal - b.normal)});
 }
@@ -105,9 +106,9 @@ void check_against_brute_force(Friction friction, unsigned seed) {
         1e-16)
       continue;
     ++looked_at, longer += found.gait_period > 1;
-    State at = released<long double>(designs[i]);
+    LongState at = released<long double>(designs[i]);
     ASSERT_TRUE(jump_on(jumps, designs[i], at, jumps_made, Start::release)) << "design " << i;
-    State round = at;
+    LongState round = at;
     for (int jump = 1; jump <= found.gait_period; ++jump) {
       ASSERT_TRUE(jump_on(jumps, designs[i], round, 1, Start::landing));
       if (jump == found.gait_period) break;
@@ -122,7 +123,7 @@ void check_against_brute_force(Friction friction, unsigned seed) {
     long double multiplier = NAN, before = NAN;
     for (int rounds = 0; rounds < 60; ++rounds) {
       const auto moved = [&](long double by) {
-        State to = at;
+        LongState to = at;
         to.angle += by * along[0], to.spin += by * along[1], to.slip += by * along[2],
             to.normal += by * along[3];
         EXPECT_TRUE(jump_on(jumps, designs[i], to, found.gait_period, Start::landing));
@@ -130,7 +131,7 @@ void check_against_brute_force(Friction friction, unsigned seed) {
       };
       // Central differences: good to the square of the distance.
       constexpr long double step = 1e-6L;
-      const State ahead = moved(step), behind = moved(-step);
+      const LongState ahead = moved(step), behind = moved(-step);
       const std::array<long double, 4> next{
           std::remainder(ahead.angle - behind.angle, 2.0L * std::numbers::pi_v<long double>) / (2.0L * step),
           (ahead.spin - behind.spin) / (2.0L * step), (ahead.slip - behind.slip) / (2.0L * step),
@@ -253,8 +254,8 @@ TEST(Gaits, ReturnToThemselvesStableOrNot) {
     const Hoop<double> h = reduce<double>(hoop);
     const ContactState<double> touch =
         after_flight(h, ContactState<double>{.angle = last.angle, .spin = last.spin}, last.flight_time);
-    State at{.angle = touch.angle, .spin = last.landing_spin};
-    const State from = at;
+    LongState at{.angle = touch.angle, .spin = last.landing_spin};
+    const LongState from = at;
     ASSERT_TRUE(jump_on(jumps, hoop, at, static_cast<long>(gait.jumps.size()), Start::landing));
     // Rounding in double of a flight's many turns, grown once round.
     const long double turned = std::abs(last.spin * last.flight_time);

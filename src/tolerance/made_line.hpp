@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Hoops made after a line of drawings that differ in one parameter only.
+///
+/// The same hoop of each sample, made after one drawing after the other, changes smoothly but where it passes
+/// a discontinuity. Every fourth of these is solved, beginning anywhere. What lies between two of them is
+/// interpolated where the four nearest agree in status, lift-offs and phases, and where a polynomial of one
+/// degree less tells the same; else it is halved. A band of other outcomes that lies between two solved hoops
+/// is passed over: how often, those that were met by chance tell.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "leapmap/outcome.hpp"
+#include "tolerance/made_hoops.hpp"
+#include "trajectory/solver.hpp"
+
+namespace leapmap {
+
+/// The drawings of a line are those from the first on that differ in one parameter, which ascends or
+/// descends; so many at least are worth it.
+struct DrawnLine {
+  std::size_t count = 1;
+  std::vector<double> along;  ///< the parameter, of each
+
+  static constexpr std::size_t least = 8;
+};
+DrawnLine line_of(std::span<const Design> drawings);
+
+/// One a thread.
+class MadeLine {
+ public:
+  /// numbers: of jumps, that are asked for besides status, lift-offs and phases.
+  explicit MadeLine(std::vector<double Outcome::*> numbers) : numbers_(std::move(numbers)) {}
+
+  /// Solves or interpolates every hoop made after each of the drawings.
+  void solve(std::span<const Design> drawings, DrawnLine line, MadeHoops& hoops, const Solver& solve);
+  /// Of the drawing's hoop of that number.
+  Outcome outcome(std::size_t drawing, std::size_t hoop) const;
+  /// A hoop that was solved by chance, and not for what lies around it.
+  struct Met {
+    Outcome instead;  ///< what would have been interpolated
+    double others;    ///< how many were passed over for each that was met
+  };
+  /// Unset: it was not, or it lies in no band that can be passed over.
+  std::optional<Met> met_by_chance(std::size_t drawing, std::size_t hoop) const;
+  /// How many hoops were solved.
+  std::size_t solved() const { return solved_; }
+  /// Of how many hoops one is solved at least.
+  static constexpr std::size_t stride = 8;
+
+ private:
+  struct Kind {
+    std::uint64_t phases = 0;
+    Status status = Status::not_computed;  ///< until it is solved or interpolated
+    std::uint8_t spurious = 0, candidates = 0;
+    bool is_solved = false;
+
+    bool is_like(const Kind& other) const {
+      return phases == other.phases && status == other.status && spurious == other.spurious &&
+             candidates == other.candidates;
+    }
+  };
+  /// Four solved drawings about a gap between two of them.
+  using Stencil = std::array<std::size_t, 4>;
+
+  std::size_t place(std::size_t drawing, std::size_t hoop) const { return drawing * samples_ + hoop; }
+  double number(std::size_t drawing, std::size_t hoop, std::size_t n) const {
+    return values_[place(drawing, hoop) * numbers_.size() + n];
+  }
+  bool begins(std::size_t drawing, std::size_t hoop) const;
+  void solve_asked(std::span<const Design> drawings, MadeHoops& hoops, const Solver& solve);
+  void keep(std::size_t at, const Outcome& outcome);
+  /// The gap after a solved drawing of a hoop: the next one that is solved. gap(from, to, stencil).
+  template <class F>
+  void for_gaps(std::size_t hoop, const F& gap);
+  bool is_smooth(std::size_t from, std::size_t to, const Stencil& nodes, std::size_t hoop) const;
+  void interpolate(std::size_t from, std::size_t to, const Stencil& nodes, std::size_t hoop);
+  /// Of the polynomial through the first so many nodes.
+  template <std::size_t N>
+  std::array<double, N> weights(const Stencil& nodes, double x) const;
+
+  std::vector<double Outcome::*> numbers_;
+  std::size_t samples_ = 0, count_ = 0, solved_ = 0;
+  std::vector<double> x_;  // of each drawing
+  std::vector<Kind> kinds_;
+  std::vector<double> values_;
+  std::vector<char> asked_;
+  std::vector<std::size_t> nodes_;  // of the hoop in hand, those that are solved
+  std::vector<Design> made_, batch_;
+  std::vector<std::size_t> places_;
+  std::vector<Outcome> outcomes_;
+};
+
+}  // namespace leapmap

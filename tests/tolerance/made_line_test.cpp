@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Hoops made after lines of drawings: interpolated where they may be.
+#include "tolerance/made_line.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "support/designs.hpp"
+#include "support/scattered.hpp"
+#include "tolerance/scatter_solver.hpp"
+
+namespace leapmap {
+namespace {
+
+using testing::plausible;
+
+TEST(DrawnLines, AreThoseThatDifferInOneParameterAndOneWay) {
+  const auto along = [](std::initializer_list<double> slopes) {
+    std::vector<Design> drawings;
+    for (const double slope : slopes) drawings.push_back({.slope = slope});
+    return drawings;
+  };
+  EXPECT_EQ(line_of(along({0.1, 0.2, 0.3})).along, (std::vector{0.1, 0.2, 0.3}));
+  EXPECT_EQ(line_of(along({0.1, 0.2, 0.15})).count, 2u) << "turns round";
+  EXPECT_EQ(line_of(along({0.1, 0.1, 0.2})).count, 1u) << "the same twice";
+  EXPECT_EQ(line_of(along({0.1})).count, 1u);
+  std::vector<Design> corner = along({0.1, 0.2, 0.3, 0.4});
+  corner[2].mass_ratio = 7.0, corner[3].mass_ratio = 7.0;
+  EXPECT_EQ(line_of(corner).count, 2u) << "goes on along another parameter";
+}
+
+std::vector<Design> line_from(Design first, double Design::*member, double step, std::size_t count) {
+  std::vector<Design> drawings(count, first);
+  for (std::size_t j = 0; j < count; ++j) drawings[j].*member += step * static_cast<double>(j);
+  return drawings;
+}
+
+/// The statistics of drawings, interpolated and not.
+struct BothWays {
+  MadeColumns exact, interpolated;
+  double solved;  ///< share of hoops solved when interpolated
+};
+
+BothWays told(const Scatter& scatter, const std::vector<Design>& drawings, const Solver& solver) {
+  const std::vector<const Field*> fields{find_field("yield"), find_field("yield_error"),
+                                         find_field("jump_height_mean"), find_field("jump_height_q05")};
+  const std::vector<Goal> goals{{"jump_height", 0.5, HUGE_VAL}};
+  BothWays both{MadeColumns(fields), MadeColumns(fields), 0.0};
+  std::size_t solved = 0;
+  const Solver counted = [&](std::span<const Design> designs, std::span<Outcome> outcomes) {
+    solved += designs.size();
+    solver(designs, outcomes);
+  };
+  for (const bool interpolates : {false, true}) {
+    solved = 0;
+    ScatterSolver solve(scatter, {}, {}, points_of(scatter), goals, {find_field("jump_height")}, counted,
+                        interpolates);
+    solve.solve(drawings, interpolates ? both.interpolated : both.exact);
+  }
+  both.solved = static_cast<double>(solved) / static_cast<double>(drawings.size() * scatter.samples);
+  return both;
+}
+
+TEST(MadeLines, TellWhatSolvingEveryHoopTells) {
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> uniform;
+  const Scene scene{.friction = Friction::coulomb};
+  const Solver exact = model_of(scene).exact(scene, 1e-10, {});
+  Scatter scatter = plausible();
+  scatter.samples = 256;
+  const Field &yield = *find_field("yield"), &error = *find_field("yield_error"),
+              &mean = *find_field("jump_height_mean");
+  double solved = 0.0;
+  int compared = 0;
+  constexpr int lines = 12;
+  for (int i = 0; i < lines; ++i) {
+    const Design first{.slope = 0.15 + 0.25 * uniform(random), .mass_ratio = 1.0 + 4.0 * uniform(random)};
+    const auto drawings = i % 2 == 0 ? line_from(first, &Design::slope, 2e-3, 60)
+                                     : line_from(first, &Design::mass_ratio, 0.03, 60);
+    const BothWays both = told(scatter, drawings, exact);
+    solved += both.solved / lines;
+    for (std::size_t j = 0; j < drawings.size(); ++j) {
+      // A hoop more or less is less than the error; an interpolated height is right to some 1e-5.
+      EXPECT_NEAR(both.interpolated.column(yield)[j], both.exact.column(yield)[j],
+                  both.exact.column(error)[j]);
+      EXPECT_GE(both.interpolated.column(error)[j], 0.9 * both.exact.column(error)[j]);
+      if (both.exact.column(yield)[j] < 0.5) continue;
+      EXPECT_NEAR(both.interpolated.column(mean)[j], both.exact.column(mean)[j], 2e-4);
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, lines * 60 / 10);
+  EXPECT_LT(solved, 0.5);
+}
+
+TEST(MadeLines, AreTheSameForAnyScatterThatHasNoBreaks) {
+  // Heights on a cubic, whose interpolation is exact: one hoop of eight is solved, and no more.
+  const Solver cubic = [](std::span<const Design> designs, std::span<Outcome> outcomes) {
+    for (std::size_t i = 0; i < designs.size(); ++i) {
+      outcomes[i] = {};
+      outcomes[i].status = Status::jumped, outcomes[i].phase_sequence = 1;
+      outcomes[i].jump_height = 1.0 + 1e-3 * std::pow(designs[i].slope, 3);
+    }
+  };
+  const Scatter scatter{{{"slope", Spread::Law::normal, 0.01}}, 64};
+  const BothWays both = told(scatter, line_from({}, &Design::slope, 1e-3, 81), cubic);
+  EXPECT_LT(both.solved, 1.0 / MadeLine::stride + 0.03);
+  for (std::size_t j = 0; j < 81; ++j)
+    EXPECT_NEAR(both.interpolated.column(*find_field("jump_height_mean"))[j],
+                both.exact.column(*find_field("jump_height_mean"))[j], 1e-13);
+}
+
+TEST(MadeLines, ThatPassOverNarrowBandsSaySo) {
+  // A band of hoops that do not jump, two drawings wide, amid others that all do.
+  const Solver banded = [](std::span<const Design> designs, std::span<Outcome> outcomes) {
+    for (std::size_t i = 0; i < designs.size(); ++i) {
+      outcomes[i] = {};
+      const bool in_band = std::abs(designs[i].slope - 0.44) < 1e-3;
+      outcomes[i].status = in_band ? Status::no_jump : Status::jumped;
+      outcomes[i].phase_sequence = in_band ? 2 : 1;
+      if (!in_band) outcomes[i].jump_height = 1.0;
+    }
+  };
+  const Scatter scatter{{{"slope", Spread::Law::normal, 0.002}}, 1024};
+  const BothWays both = told(scatter, line_from({}, &Design::slope, 1e-3, 81), banded);
+  const auto exact = both.exact.column(*find_field("yield")),
+             made = both.interpolated.column(*find_field("yield")),
+             error = both.interpolated.column(*find_field("yield_error"));
+  double farthest = 0.0;
+  for (std::size_t j = 0; j < exact.size(); ++j) {
+    farthest = std::max(farthest, std::abs(made[j] - exact[j]));
+    EXPECT_LE(std::abs(made[j] - exact[j]), 3.0 * error[j]) << j;  // what was met by chance is a sample
+  }
+  EXPECT_GT(farthest, 0.1) << "else nothing was passed over";
+}
+
+}  // namespace
+}  // namespace leapmap
