@@ -140,7 +140,7 @@ def measure(designs, folder, quick):
                      axis=1).astype(float)
 
     run(PROGRAM, "precision", "--points", folder / "designs.csv", "--methods", "exact,gsl-rk8pd,gsl-rkck",
-        "-o", folder / "precision.h5", *(["--quick"] if quick else []))
+        "-o", folder / "precision.h5", *([] if quick else ["--thorough"]))
     ours = read_table(folder / "precision.h5", "leapmap precision").fields
     rows = [(f"leapmap, {NAMES.get(m, m)}", s, t, h, e, w, f)
             for m, c, s, t, h, e, w, f in zip(*(ours[k] for k in ("method", "control", "setting", "seconds",

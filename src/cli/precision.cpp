@@ -10,6 +10,7 @@
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
+#include "cli/quick_first.hpp"
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
 #include "engine/provenance.hpp"
@@ -33,6 +34,7 @@ struct PrecisionArguments {
   PrecisionOptions options;
   Friction friction = Friction::sticking;
   Locking locking = Locking::required;
+  bool quick = false, thorough = false, designs_given = false;
 };
 
 void print_head() {
@@ -106,30 +108,17 @@ std::vector<Design> read_designs(const std::string& path) {
   return designs;
 }
 
-int run(PrecisionArguments arguments, bool designs_given) {
-  PrecisionOptions& options = arguments.options;
-  if (options.quick && !designs_given) options.designs = 40;
-  if (options.quick) options.budget = 0.3;
-  const std::array inputs{NamedPath{"--points", arguments.points}};
-  const std::array outputs{NamedPath{"-o", arguments.table, true}};
-  refuse_same_files(inputs, outputs);
-  if (!arguments.points.empty()) options.points = read_designs(arguments.points);
-  const Scene scene{.friction = arguments.friction, .runway = 4.0};
-  const std::vector<Contestant> contestants = precision_contestants(true, scene.friction);
-  for (const std::string& method : options.methods)
-    if (std::ranges::find(contestants, method, &Contestant::method) == contestants.end())
-      throw InputError(fmt::format(
-          "--methods {}: lacks friction; allowed with --friction coulomb: exact, gsl-...", method));
-  refuse_taken(arguments.table, precision_filetype, arguments.locking);  // not after minutes of work
-  note_signals();
+/// Measures and writes the table. False: a signal came first.
+bool measure(const PrecisionArguments& arguments, const Scene& scene, bool quick) {
+  PrecisionOptions options = arguments.options;
+  options.quick = quick;
+  if (quick && !arguments.designs_given) options.designs = 40;
+  if (quick) options.budget = 0.3;
   const auto begin = std::chrono::steady_clock::now();
   print_head();
   const std::vector<PrecisionRow> rows =
       study_precision(options, scene, print_row, [] { return noted_signal() != 0; });
-  if (noted_signal() != 0) {
-    tell(fmt::format("interrupted after {} of the table's rows; nothing was written", rows.size()));
-    return 128 + noted_signal();
-  }
+  if (noted_signal() != 0) return false;
   std::vector<hdf5::Attribute> attributes =
       file_provenance(precision_filetype, "Speed against accuracy of methods for passive hoops");
   attributes.emplace_back("random_designs",
@@ -144,7 +133,25 @@ int run(PrecisionArguments arguments, bool designs_given) {
     tell_of_folder(arguments.table);
   say("table    {} rows in {}\nchart    /usr/bin/python3 -m leapmap.charts precision {}\n", rows.size(),
       arguments.table, shell_quoted(arguments.table));
-  return 0;
+  return true;
+}
+
+int run(PrecisionArguments arguments) {
+  PrecisionOptions& options = arguments.options;
+  const std::array inputs{NamedPath{"--points", arguments.points}};
+  const std::array outputs{NamedPath{"-o", arguments.table, true}};
+  refuse_same_files(inputs, outputs);
+  if (!arguments.points.empty()) options.points = read_designs(arguments.points);
+  const Scene scene{.friction = arguments.friction, .runway = 4.0};
+  const std::vector<Contestant> contestants = precision_contestants(true, scene.friction);
+  for (const std::string& method : options.methods)
+    if (std::ranges::find(contestants, method, &Contestant::method) == contestants.end())
+      throw InputError(fmt::format(
+          "--methods {}: lacks friction; allowed with --friction coulomb: exact, gsl-...", method));
+  refuse_taken(arguments.table, precision_filetype, arguments.locking);  // not after minutes of work
+  note_signals();
+  return run_quick_first(arguments.thorough, arguments.table,
+                         [&](bool quick) { return measure(arguments, scene, quick); });
 }
 
 }  // namespace
@@ -152,14 +159,14 @@ int run(PrecisionArguments arguments, bool designs_given) {
 void add_precision(CommandLine& line, int& status) {
   Command command = line.command("precision", "measure speed against accuracy of every method, in one run");
   command.examples(
-      {{"leapmap precision", "two minutes; then python3 -m leapmap.charts precision maps/precision.h5"},
-       {"leapmap precision --quick --methods exact,gsl-rk8pd", "a few seconds"}});
+      {{"leapmap precision", "ten seconds; then python3 -m leapmap.charts precision maps/precision.h5"},
+       {"leapmap precision --thorough", "the same table first, then two minutes for a finer one"}});
   auto arguments = std::make_shared<PrecisionArguments>();
   command.value("-o,--output", arguments->table, "the HDF5 table to write; default: maps/precision.h5")
       .check(named_file());
   const Flag designs = command
                            .value("--designs", arguments->options.designs,
-                                  "number of random designs; default: 200, with --quick 40")
+                                  "number of random designs; default: 40, with --thorough 200 in the end")
                            .check(whole_number(1, 1e6));
   command.value("--seed", arguments->options.seed, "seed of the random designs; default: 1")
       .check(whole_number(0, most_seed));
@@ -186,14 +193,17 @@ void add_precision(CommandLine& line, int& status) {
           [arguments](const std::string& word) { arguments->friction = find_model(word)->friction; },
           "contact model; coulomb: with random mu_static and mu_kinetic; default: sticking")
       .check(one_of(frictions));
-  command.flag("--quick", arguments->options.quick, "fewer designs and settings: within 30 s");
+  add_quick_and_thorough(command, arguments->quick, arguments->thorough, "designs and settings");
   add_no_lock(command, arguments->locking);
   command.footer(
       "Errors are the largest over the designs with the right status, flag and number of lift-offs. The "
       "reference is exact in long double if gsl-rk8pd at 1e-13 agrees with it, and gsl-rk8pd otherwise.\n"
       "wrong: fraction of the other designs. rhs: evaluations of the acceleration per design.\n"
       "One thread. Settings that take longer than a few seconds are left out.");
-  command.runs([arguments, designs, &status] { status = run(*arguments, designs.is_given()); });
+  command.runs([arguments, designs, &status] {
+    arguments->designs_given = designs.is_given();
+    status = run(*arguments);
+  });
 }
 
 }  // namespace leapmap::cli

@@ -26,6 +26,7 @@ add_executable(leapmap-program
   src/cli/precision.cpp
   src/cli/progress.cpp
   src/cli/proof_lines.cpp
+  src/cli/quick_first.cpp
   src/cli/prove.cpp
   src/cli/spec_flags.cpp
   src/cli/spoken.cpp

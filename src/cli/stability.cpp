@@ -9,6 +9,7 @@
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
+#include "cli/quick_first.hpp"
 #include "cli/spoken.hpp"
 #include "cli/sweep.hpp"
 #include "engine/provenance.hpp"
@@ -27,8 +28,8 @@ constexpr std::string_view landing_case = "landing";
 struct StabilityArguments {
   std::string table = "maps/stability.h5";
   std::vector<std::string> cases;  // empty: all
-  StabilityOptions options;
   Locking locking = Locking::required;
+  bool quick = false, thorough = false;
 };
 
 /// The rows of one method in one case, which stand together, and their verdict.
@@ -116,9 +117,9 @@ Table table_of(std::span<const StabilityRow> rows) {
   return columns;
 }
 
-int run(const StabilityArguments& arguments) {
-  refuse_taken(arguments.table, stability_filetype, arguments.locking);  // not after minutes of work
-  note_signals();
+/// Runs the cases and writes the table. False: a signal came first.
+bool study(const StabilityArguments& arguments, bool quick) {
+  const StabilityOptions options{.quick = quick};
   const auto begin = std::chrono::steady_clock::now();
   say("{:<10} {:<27} {:<9}  {:<20} {:>5} {:>5} {:>6} {:>5} {:>9}  {:>9}  {:>9}\n", "case", "method",
       "control", "verdict", "fine", "lossy", "failed", "wrong", "undecided", "worst", "most rhs");
@@ -129,22 +130,19 @@ int run(const StabilityArguments& arguments) {
   };
   for (const NamedCase& named : stability_cases()) {
     if (!wanted(named.name)) continue;
-    const std::vector<StabilityRow> more = run_case(stability_case(named, arguments.options), stop_requested);
-    if (stop_requested()) {
-      tell(fmt::format("interrupted in the case \"{}\"; nothing was written", named.name));
-      return 128 + noted_signal();
-    }
+    const std::vector<StabilityRow> more = run_case(stability_case(named, options), stop_requested);
+    if (stop_requested()) return false;
     print_verdicts(more);
     rows.insert(rows.end(), more.begin(), more.end());
   }
   if (wanted(landing_case)) {
-    const std::vector<StabilityRow> landings = run_landing_case(arguments.options);
+    const std::vector<StabilityRow> landings = run_landing_case(options);
     print_verdicts(landings);
     rows.insert(rows.end(), landings.begin(), landings.end());
   }
   std::vector<hdf5::Attribute> attributes =
       file_provenance(stability_filetype, "Where methods for passive hoops fail");
-  attributes.emplace_back("quick", std::int64_t{arguments.options.quick});
+  attributes.emplace_back("quick", std::int64_t{quick});
   attributes.emplace_back("wall_time",
                           std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   const std::array tables{table_of(rows)};
@@ -152,7 +150,14 @@ int run(const StabilityArguments& arguments) {
     tell_of_folder(arguments.table);
   say("table    {} rows in {}\ncharts   /usr/bin/python3 -m leapmap.charts stability {}\n", rows.size(),
       arguments.table, shell_quoted(arguments.table));
-  return 0;
+  return true;
+}
+
+int run(const StabilityArguments& arguments) {
+  refuse_taken(arguments.table, stability_filetype, arguments.locking);  // not after minutes of work
+  note_signals();
+  return run_quick_first(arguments.thorough, arguments.table,
+                         [&](bool quick) { return study(arguments, quick); });
 }
 
 }  // namespace
@@ -160,8 +165,8 @@ int run(const StabilityArguments& arguments) {
 void add_stability(CommandLine& line, int& status) {
   Command command = line.command("stability", "find where methods fail: every method in thirteen cases");
   command.examples(
-      {{"leapmap stability", "ten minutes; then python3 -m leapmap.charts stability maps/stability.h5"},
-       {"leapmap stability --quick", "a minute at most; fewer positions"}});
+      {{"leapmap stability", "ten seconds; then python3 -m leapmap.charts stability maps/stability.h5"},
+       {"leapmap stability --thorough", "the same table first, then ten minutes for one of more positions"}});
   auto arguments = std::make_shared<StabilityArguments>();
   command.value("-o,--output", arguments->table, "the HDF5 table to write; default: maps/stability.h5")
       .check(named_file());
@@ -170,7 +175,7 @@ void add_stability(CommandLine& line, int& status) {
   command.value("--cases", arguments->cases, "cases to run, separated by commas; default: all of those below")
       .with_commas()
       .check(one_of(cases));
-  command.flag("--quick", arguments->options.quick, "fewer positions in each case: within a minute");
+  add_quick_and_thorough(command, arguments->quick, arguments->thorough, "positions in each case");
   add_no_lock(command, arguments->locking);
   command.footer(
       "Each case approaches a difficult design:\n"

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """leapmap stability --quick: its table and charts, and the comparison with programs that are not ours."""
+import signal
+import subprocess
+
 import h5py
 import numpy as np
 import pytest
 import xarray
-from support.program import leapmap, scripted
+from support.program import PROGRAM, leapmap, scripted
 
 
 CASES = ("landing", "needle", "release", "graze", "long", "step", "tolerance", "chaos", "painleve", "slow",
@@ -83,3 +86,18 @@ def test_scipy_and_boost_solve_the_same_designs_and_stand_on_the_same_chart(tmp_
             assert t["max_height_error"][tightest] < 1e-8 and t["wrong"][tightest] == 0, rival
     drawn = (tmp_path / "rivals_time.svg").read_text()
     assert "scipy" in drawn and "Boost" in drawn and "leapmap, exact, SIMD lanes" in drawn
+
+
+def test_a_thorough_run_that_is_interrupted_leaves_the_quick_table(tmp_path):
+    table = tmp_path / "table.h5"
+    process = subprocess.Popen(
+        [PROGRAM, "stability", "--thorough", "--cases", "needle,long", "-o", table], stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE, text=True)
+    for line in process.stdout:
+        if line.startswith("thorough now"):
+            break
+    process.send_signal(signal.SIGINT)
+    assert process.communicate(timeout=60)[1] == f"leapmap: interrupted; {table} holds the quick run\n"
+    assert process.returncode == 130
+    with xarray.open_dataset(table) as t:
+        assert t.attrs["quick"] == 1 and set(t.study.values) == {"needle", "long"}
