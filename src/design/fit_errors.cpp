@@ -216,9 +216,9 @@ void tell_uncertainty(const LeastSquares& problem, const LeastSquaresFit& best, 
     covariance += svd.matrixV().col(i) * svd.matrixV().col(i).transpose() * (variance / (known * known));
   }
   // Bad points move no end of a profile. Weights flatten the sum by their mean, as they do its curvature.
-  const std::vector<double> weights =
-      options.loss == Loss::huber ? huber_weights(best.residuals)
-                                  : std::vector<double>(problem.residuals, 1.0);
+  const std::vector<double> weights = options.loss == Loss::huber
+                                          ? huber_weights(best.residuals)
+                                          : std::vector<double>(problem.residuals, 1.0);
   const LeastSquares counted = weighed(problem, weights);
   double sum = 0.0;
   for (std::size_t i = 0; i < weights.size(); ++i) sum += weights[i] * best.residuals[i] * best.residuals[i];

@@ -71,8 +71,8 @@ struct Scatter {
   std::vector<Spread> spreads{};  ///< at most one for each parameter; empty: all hoops are nominal
   long samples = 1024;            ///< number of manufactured hoops per design, a multiple of 16
   long seed = 1;                  ///< equal seeds give equal hoops
-  /// With friction: a map solves some hoops made after neighbouring designs, and interpolates those between
-  /// where no discontinuity is near. Else all are solved.
+  /// With friction: a map solves each sample for some of its neighbouring designs, and interpolates it for
+  /// those between if no discontinuity is near. Else all are solved.
   bool interpolate = true;
 };
 
