@@ -117,7 +117,7 @@ class Map:
             for name, law in table.items():
                 if isinstance(law, dict) and not law.keys() & {"normal", "uniform"}:
                     yield from laws(f"{prefix}{name}.", law)
-                elif name not in ("samples", "seed"):
+                elif name not in ("samples", "seed", "interpolate"):
                     yield prefix + name, law
 
         for name, law in laws("", self.spec().get("scatter", {})):
