@@ -71,7 +71,7 @@ void print_outcome(const Outcome& outcome, const Scene& scene, ShownUnits& units
   if (outcome.phase_sequence != 0) say("  {:<24} {}\n", "phases", phase_letters(outcome.phase_sequence));
 }
 
-/// As the map has it at its designs. scales: of the design.
+/// As the map has it at its designs, with every hoop solved. scales: of the design.
 void print_made(const Spec& spec, const Scales& scales, ShownUnits& units) {
   const Request request = request_of(spec);
   MadeColumns columns(statistics_of(request));

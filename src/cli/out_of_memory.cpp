@@ -70,4 +70,18 @@ void* realloc(void* old, std::size_t bytes) noexcept {
 }
 }
 
+namespace {
+
+/// Each of them is looked up now. While dlerror makes its message a first look-up would free what it is
+/// about.
+[[gnu::constructor(102)]] void look_up() {
+  void* volatile memory = std::malloc(1);  // else the compiler would leave these calls out
+  memory = std::realloc(memory, 2);
+  std::free(memory);
+  memory = std::calloc(1, 1);
+  std::free(memory);
+}
+
+}  // namespace
+
 #endif

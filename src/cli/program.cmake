@@ -19,6 +19,7 @@ add_executable(leapmap-program
   src/cli/info_place.cpp
   src/cli/join.cpp
   src/cli/json.cpp
+  src/cli/late.cpp
   src/cli/main.cpp
   src/cli/motor.cpp
   src/cli/out_of_memory.cpp
@@ -43,3 +44,17 @@ target_compile_options(leapmap-program PRIVATE $<$<CONFIG:Release>:-O1>)
 target_precompile_headers(leapmap-program PRIVATE <algorithm> <cmath> <filesystem> <functional> <map> <memory>
   <numeric> <optional>
                                                   <span> <string> <vector> <fmt/format.h>)
+# Arb and libzip come with a module, which is loaded when it is first needed.
+target_compile_definitions(leapmap-program PRIVATE
+  "LEAPMAP_MODULE_FOLDER=\"${CMAKE_INSTALL_LIBDIR}/leapmap\"")
+target_link_options(leapmap-program PRIVATE -Wl,--as-needed)
+add_library(leapmap-late MODULE src/cli/late_module.cpp $<TARGET_OBJECTS:leapmap-late-objects>)
+set_target_properties(leapmap-late PROPERTIES PREFIX "" CXX_VISIBILITY_PRESET hidden)
+target_compile_definitions(leapmap-late PRIVATE $<$<BOOL:${ARB_LIBRARY}>:LEAPMAP_HAS_ARB>)
+target_include_directories(leapmap-late PRIVATE ${PROJECT_SOURCE_DIR}/src)
+target_link_libraries(leapmap-late PRIVATE ${LEAPMAP_LATE_LIBRARIES} fmt::fmt leapmap-options)
+if(NOT LEAPMAP_SANITIZE)  # whose symbols are the program's
+  target_link_options(leapmap-late PRIVATE -Wl,--no-undefined)
+endif()
+add_dependencies(leapmap-program leapmap-late)
+install(TARGETS leapmap-late DESTINATION ${CMAKE_INSTALL_LIBDIR}/leapmap)

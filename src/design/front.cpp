@@ -54,7 +54,8 @@ bool Front::takes(const Verdict& verdict) const {
   if (!verdict.feasible()) return false;
   const auto above = std::ranges::upper_bound(places_, verdict.cost[0], {},
                                               [](const Place& place) { return place.verdict.cost[0]; });
-  return above == places_.begin() || verdict.cost[1] < std::prev(above)->verdict.cost[1];
+  const double least = above == places_.begin() ? HUGE_VAL : std::prev(above)->verdict.cost[1];
+  return verdict.cost[1] < least;
 }
 
 void Front::add(std::vector<Place> places) {
@@ -97,10 +98,10 @@ double Front::hypervolume() const {
 
 void Fronts::add(std::span<const double> places, std::span<const Verdict> verdicts) {
   std::map<std::uint64_t, std::vector<Place>> sorted;
+  const Front none;
   for (std::size_t i = 0; i < verdicts.size(); ++i) {
-    if (!verdicts[i].feasible()) continue;
     const auto there = fronts_.find(verdicts[i].outcome);
-    if (there == fronts_.end() || there->second.takes(verdicts[i]))
+    if ((there == fronts_.end() ? none : there->second).takes(verdicts[i]))
       sorted[verdicts[i].outcome].push_back(place_of(places, verdicts, i));
   }
   for (auto& [outcome, some] : sorted) fronts_[outcome].add(std::move(some));
@@ -174,11 +175,13 @@ double volume_of(std::span<const Cost> front, const Cost& corner) {
   return volume;
 }
 
-/// A corner beyond both costs of a front.
-Cost corner_of(std::span<const Cost> front) {
-  constexpr double beyond = 0.1;
-  const Cost &first = front.front(), &last = front.back();
-  return {last[0] + beyond * (last[0] - first[0]), first[1] + beyond * (first[1] - last[1])};
+/// Whether a front dominates about as much as it did: what it dominates more is told up to the corner beyond
+/// both, so that longer ends count.
+bool is_as_before(std::span<const Cost> before, std::span<const Cost> now) {
+  constexpr double alike = 1e-6;  // gaps between a front's places are worth more
+  const Cost corner{std::max(before.back()[0], now.back()[0]), std::max(before.front()[1], now.front()[1])};
+  const double volume = volume_of(now, corner);
+  return volume - volume_of(before, corner) <= alike * volume;
 }
 
 /// A step by chance from a place of a front: along it as its neighbours lie, or any length in any direction.
@@ -207,17 +210,15 @@ void refine(Judge& judge, Fronts& fronts, std::size_t most, std::size_t a_round,
   std::mt19937_64 random(seed);
   std::vector<double> places(a_round * dimensions);
   std::vector<Verdict> verdicts(a_round);
-  // What so many rounds in a row bring no more, the next will not either. Gaps between a front's places are
-  // worth more than that.
-  constexpr double still = 1e-6;
-  constexpr std::size_t patience = 16;
-  const Cost corner = corner_of(fronts.costs_of_all());
-  std::vector<double> volumes;  // of the front of all, after each round
+  // What so many rounds bring no more, the next will not either. Many bands take their turns: they are not
+  // all of the front while they come nearer.
+  constexpr std::size_t patience = 16, few = 4;
+  std::vector<std::vector<Cost>> fronts_before;
   const auto is_still = [&] {
-    return volumes.size() > patience &&
-           volumes.back() < volumes[volumes.size() - 1 - patience] * (1.0 + still);
+    return fronts.by_outcome().size() <= few && fronts_before.size() > patience &&
+           is_as_before(fronts_before[fronts_before.size() - 1 - patience], fronts_before.back());
   };
-  for (std::size_t round = 0; round < rounds && !is_still() && !fronts.by_outcome().empty(); ++round) {
+  for (std::size_t round = 0; round < rounds && !fronts.by_outcome().empty() && !is_still(); ++round) {
     // Ever fewer bands: those that stay behind had their turn.
     fronts.leave_nearest(std::max<std::size_t>(24 >> (3 * round / rounds), 3));
     for (std::size_t i = 0; i < a_round;)
@@ -230,7 +231,7 @@ void refine(Judge& judge, Fronts& fronts, std::size_t most, std::size_t a_round,
     judge.judge(places, verdicts);
     fronts.add(places, verdicts);
     fronts.thin(2 * most);
-    volumes.push_back(volume_of(fronts.costs_of_all(), corner));
+    fronts_before.push_back(fronts.costs_of_all());
   }
 }
 

@@ -23,8 +23,9 @@ namespace {
 /// Designs solved at once: what the solvers take as one block, and no more than stays in the second cache;
 /// with many hoops made after each fewer, so that a stop need not wait long.
 std::size_t piece_of(const Request& request) {
-  constexpr std::size_t most = 1024, most_hoops = 1 << 17;
+  constexpr std::size_t most = 1024;
   if (!wants_samples(request)) return most;
+  const std::size_t most_hoops = can_be_interpolated(request) ? 1 << 17 : 1 << 16;  // longer lines
   return std::clamp<std::size_t>(most_hoops / static_cast<std::size_t>(request.scatter.samples), 1, most);
 }
 

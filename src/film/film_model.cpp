@@ -136,7 +136,7 @@ bool FilmModel::residuals(const Design& design, const Camera& camera, const Ques
   if (!residuals.empty() && !run(0.0, fine)) return false;
   if (jacobian.empty()) return true;
   return asked.by_design.size() <= FewDual::derivatives ? run(FewDual(0.0), of_derivatives)
-                                                           : run(DesignDual(0.0), of_derivatives);
+                                                        : run(DesignDual(0.0), of_derivatives);
 }
 
 bool FilmModel::residuals_with_camera(const Design& design, Camera& camera,

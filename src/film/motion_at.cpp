@@ -118,12 +118,12 @@ Moving<S> integrated(const Moving<S>& from, double span, const Rate& rate, doubl
 template <class S>
 class Walk {
  public:
-  Walk(const Seeded<S>& design, const Scene& scene, double accuracy)
+  Walk(const Seeded<S>& design, const Scene& scene, double accuracy, std::size_t times)
       : accuracy_(accuracy),
         hoop_(design.hoop(scene)),
         contact_{design.parameter(by_mu_static), design.parameter(by_mu_kinetic),
                  design.parameter(by_restitution), S(scene.rest_speed)},
-        budget_(accuracy < 1e-9 ? 20'000 : 3'000) {
+        budget_((accuracy < 1e-6 ? 20'000 : 3'000) + 10 * static_cast<long>(times)) {
     if (contact_.mu_static < contact_.mu_kinetic) contact_.mu_static = contact_.mu_kinetic;
     at_ = {design.parameter(by_release_angle), design.parameter(by_release_spin), S(0.0), S(0.0)};
   }
@@ -275,7 +275,7 @@ std::vector<MotionAt<S>> motion_at(const Design& design, const Scene& scene, std
   std::vector<double> scaled;
   for (const double time : times) scaled.push_back(time / second);
   const std::span<const double> all = scaled;
-  Walk<S> walk(Seeded<S>(design, by), scene, accuracy);
+  Walk<S> walk(Seeded<S>(design, by), scene, accuracy, times.size());
   std::size_t next = 0, flight = 0;
   // Lift-offs that were flown: without slip a spurious one is rolled over.
   const std::size_t flights =

@@ -2,6 +2,7 @@
 /// One design's motion at given times, with its derivatives by the parameters: what a film is compared with.
 #pragma once
 
+#include <array>
 #include <numeric>
 #include <span>
 #include <vector>

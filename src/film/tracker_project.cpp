@@ -3,17 +3,16 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <zip.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <memory>
 #include <numbers>
 #include <optional>
 #include <pugixml.hpp>
 #include <vector>
 
+#include "film/unzip.hpp"
 #include "support/number.hpp"
 #include "support/posix.hpp"
 
@@ -23,37 +22,11 @@ namespace {
 constexpr std::string_view a_project = "a project of Tracker, .trk or .trz";
 constexpr std::size_t most_project_bytes = std::size_t{1} << 28;
 
-/// The text of the .trk in an archive.
-std::string unzipped(const std::string& path) {
-  int error = 0;
-  const std::unique_ptr<zip_t, decltype(&zip_discard)> archive(zip_open(path.c_str(), ZIP_RDONLY, &error),
-                                                               &zip_discard);
-  if (!archive)
-    throw InputError(fmt::format("{}: is not a zip archive that can be read; allowed: {}", path, a_project));
-  const zip_int64_t files = zip_get_num_entries(archive.get(), 0);
-  for (zip_int64_t i = 0; i < files; ++i) {
-    zip_stat_t entry;
-    zip_stat_init(&entry);
-    if (zip_stat_index(archive.get(), static_cast<zip_uint64_t>(i), 0, &entry) != 0) continue;
-    if (!std::string_view(entry.name).ends_with(".trk")) continue;
-    if (entry.size > most_project_bytes)
-      throw InputError(fmt::format("{}: {} has {} bytes; allowed: at most {}", path, entry.name, entry.size,
-                                   most_project_bytes));
-    const std::unique_ptr<zip_file_t, decltype(&zip_fclose)> file(
-        zip_fopen_index(archive.get(), static_cast<zip_uint64_t>(i), 0), &zip_fclose);
-    std::string text(entry.size, '\0');
-    if (!file || zip_fread(file.get(), text.data(), entry.size) != static_cast<zip_int64_t>(entry.size))
-      throw InputError(fmt::format("{}: {} cannot be unpacked; allowed: {}", path, entry.name, a_project));
-    return text;
-  }
-  throw InputError(fmt::format("{}: holds no .trk; allowed: {}", path, a_project));
-}
-
 std::string text_of(const std::string& path) {
   if (path.ends_with(".trz")) {
     const TextFile readable(path, a_project,
                             most_project_bytes);  // says in its own words what is wrong with a file
-    return unzipped(path);
+    return unzipped(path, ".trk", most_project_bytes, a_project);
   }
   return TextFile(path, a_project, most_project_bytes).rest();
 }

@@ -161,8 +161,8 @@ void JournaledFile::write(std::uint64_t offset, std::span<const std::byte> bytes
 
 void JournaledFile::commit() {
   if (abandoned_) return;
-  if (!appended_ && waiting_.empty() && size_ == committed_) return;  // nothing has changed
   attempt([&] {
+    if (!appended_ && waiting_.empty() && size_ == committed_) return;  // nothing has changed
     // What was appended has to be there before anything refers to it.
     if (std::exchange(appended_, false)) sync(descriptor_, path_);
     const bool first = committed_ == 0;

@@ -217,27 +217,30 @@ GradientSolver make_gradient_solver(const Request& request) {
       };
 }
 
-namespace {
-
-/// Whether hoops made after neighbouring drawings may be interpolated: where to solve one takes long, and
-/// phases tell on which side of each discontinuity it is.
-bool can_be_interpolated(const Request& sample) {
+bool can_be_interpolated(const Request& request) {
+  const Request sample = request_of_sample(request);
   const Scene& scene = sample.scene;
   const bool one_jump = scene.jumps == 1 && scene.settle == 0;
-  return one_jump && is_exact(sample) && model_of(scene).slips &&
+  const auto is_extreme = [](const Field* field) {
+    const auto* made = std::get_if<OfMade>(&field->source);
+    return made && made->statistic == Statistic::worst_case;
+  };
+  return request.scatter.interpolate && one_jump && is_exact(sample) && model_of(scene).slips &&
+         std::ranges::none_of(request.columns, is_extreme) &&
          std::ranges::none_of(sample.columns,
                               [](const Field* field) { return field->of_way || field->of_wall; });
 }
 
-}  // namespace
-
 ScatterSolver scatter_solver_of(const Request& request, std::shared_ptr<const SobolPoints> points,
                                 const std::function<Solver(const Request&)>& make) {
-  const Request sample = request_of_sample(request);
-  return {request.scatter, request.hoop,
-          request.held,    std::move(points),
-          request.goals,   quantities_of(statistics_of(request)),
-          make(sample),    request.scatter.interpolate && can_be_interpolated(sample)};
+  return {request.scatter,
+          request.hoop,
+          request.held,
+          std::move(points),
+          request.goals,
+          quantities_of(statistics_of(request)),
+          make(request_of_sample(request)),
+          can_be_interpolated(request)};
 }
 
 Motion tell(const Design& design, const Request& request, double interval) {

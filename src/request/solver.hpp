@@ -26,6 +26,10 @@ GradientSolver make_gradient_solver(const Request& request);
 
 /// A solver for the request's statistics of manufactured hoops, after these points. make: of what solves the
 /// hoops.
+/// Whether hoops made after lines of designs may be interpolated: where to solve one takes long, and phases
+/// tell on which side of each discontinuity it is. The worst of them may not.
+bool can_be_interpolated(const Request& request);
+
 ScatterSolver scatter_solver_of(const Request& request, std::shared_ptr<const SobolPoints> points,
                                 const std::function<Solver(const Request&)>& make = make_solver);
 

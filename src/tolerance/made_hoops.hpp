@@ -55,6 +55,15 @@ class MadeHoops {
 
   /// The law of spread k around this drawing.
   CutLaw law(std::size_t k, const Design& drawn, const Body* body = nullptr) const;
+  /// The width of the spread of a parameter around this drawing; 0: it has none. is_it(member): whether it is
+  /// that one.
+  template <class F>
+  double width_of(const Design& drawn, const F& is_it) const {
+    for (const Made& spread : spreads_)
+      if (double Design::*const member = spread.variable.parameter(); member && is_it(member))
+        return width_of(spread, drawn, nominal_);
+    return 0.0;
+  }
   /// Whether of each law as much is left as has to be.
   bool can_make(const Design& drawn, const Body* body = nullptr) const;
 

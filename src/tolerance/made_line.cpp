@@ -4,6 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
+#include <utility>
+
+#include "support/stop.hpp"
 
 namespace leapmap {
 namespace {
@@ -14,6 +18,12 @@ std::uint64_t scrambled(std::uint64_t x) {
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
   return x ^ (x >> 31);
+}
+
+/// But for their roundings.
+bool is_alike(double a, double b, double spread) {
+  constexpr double rounding = 1e-13;
+  return std::abs(a - b) <= spread + rounding * std::abs(a);
 }
 
 /// A design is nothing but its numbers.
@@ -40,24 +50,35 @@ std::optional<std::size_t> difference(const Numbers& a, const Numbers& b) {
 
 DrawnLine line_of(std::span<const Design> drawings) {
   DrawnLine line;
-  std::optional<std::size_t> along;
   double way = 0.0;
   Numbers last = numbers_of(drawings[0]);
   for (; line.count < drawings.size(); ++line.count) {
     const Numbers next = numbers_of(drawings[line.count]);
     const auto differs = difference(last, next);
-    if (!differs || (along && along != differs)) break;
+    if (!differs || (!line.along.empty() && *differs != line.place)) break;
     const double step = next[*differs] - last[*differs];
     if (!(step * way >= 0.0) || !std::isfinite(step)) break;
-    if (!along) line.along.push_back(last[*differs]);
+    if (line.along.empty()) line.along.push_back(last[*differs]);
     line.along.push_back(next[*differs]);
-    along = differs, way = step, last = next;
+    line.place = *differs, way = step, last = next;
   }
   return line;
 }
 
-bool MadeLine::begins(std::size_t drawing, std::size_t hoop) const {
-  return drawing == 0 || drawing + 1 == count_ || (drawing + scrambled(hoop)) % stride == 0;
+bool MadeLine::suits(const DrawnLine& line, std::span<const Design> drawings, const MadeHoops& hoops) {
+  if (line.count < shortest_line) return false;
+  for (std::size_t j = 0; j < line.count; ++j) {
+    // Only so do the hoops of several drawings see the same discontinuities.
+    const double width = hoops.width_of(drawings[j], [&](double Design::*member) {
+      return &(drawings[j].*member) == reinterpret_cast<const double*>(&drawings[j]) + line.place;
+    });
+    if (j + 1 < line.count && !(std::abs(line.along[j + 1] - line.along[j]) <= width)) return false;
+  }
+  return true;
+}
+
+bool MadeLine::is_by_chance(std::size_t drawing, std::size_t hoop) const {
+  return (drawing + scrambled(hoop)) % stride == 0;
 }
 
 void MadeLine::keep(std::size_t at, const Outcome& outcome) {
@@ -72,6 +93,7 @@ void MadeLine::solve_asked(std::span<const Design> drawings, MadeHoops& hoops, c
   made_.resize(samples_), outcomes_.resize(at_once);
   batch_.clear(), places_.clear();
   const auto run = [&] {
+    throw_if_stopped();
     solve(batch_, std::span(outcomes_).first(batch_.size()));
     for (std::size_t i = 0; i < batch_.size(); ++i) keep(places_[i], outcomes_[i]);
     batch_.clear(), places_.clear();
@@ -130,17 +152,20 @@ std::array<double, N> MadeLine::weights(const Stencil& nodes, double x) const {
 bool MadeLine::is_smooth(std::size_t from, std::size_t to, const Stencil& nodes, std::size_t hoop) const {
   const Kind& kind = kinds_[place(from, hoop)];
   if (kind.status == Status::failed || nodes[2] == nodes[3]) return false;
-  if (kind.status != Status::jumped) return true;
-  // Both agree that well that the better one is off by less than a hundredth of what a thousand hoops tell.
-  constexpr double alike = 3e-4;
-  const double x = 0.5 * (x_[from] + x_[to]);
-  const auto cubic = weights<4>(nodes, x);
-  const auto square = weights<3>(nodes, x);
-  for (std::size_t n = 0; n < numbers_.size(); ++n) {
+  const std::size_t each = numbers_.size();
+  const auto cubic = weights<4>(nodes, 0.5 * (x_[from] + x_[to]));
+  const auto square = weights<3>(nodes, 0.5 * (x_[from] + x_[to]));
+  for (std::size_t n = 0; n < each; ++n) {
     double better = 0.0, worse = 0.0;
-    for (std::size_t i = 0; i < cubic.size(); ++i) better += cubic[i] * number(nodes[i], hoop, n);
-    for (std::size_t i = 0; i < square.size(); ++i) worse += square[i] * number(nodes[i], hoop, n);
-    if (!(std::abs(better - worse) <= alike * std::abs(better))) return false;
+    bool applies = false;
+    for (std::size_t i = 0; i < cubic.size(); ++i) {
+      const double value = number(nodes[i], hoop, n);
+      applies = applies || value == value;
+      better += cubic[i] * value;
+      if (i < square.size()) worse += square[i] * value;
+    }
+    // NaN differs from everything.
+    if (applies && !is_alike(better, worse, spreads_[from * each + n])) return false;
   }
   return true;
 }
@@ -158,18 +183,31 @@ void MadeLine::interpolate(std::size_t from, std::size_t to, const Stencil& node
   }
 }
 
-void MadeLine::solve(std::span<const Design> drawings, DrawnLine line, MadeHoops& hoops,
-                     const Solver& solve) {
-  count_ = drawings.size(), samples_ = hoops.samples(), solved_ = 0;
-  x_ = std::move(line.along);
-  kinds_.assign(count_ * samples_, {});
-  values_.resize(kinds_.size() * numbers_.size());
-  asked_.assign(kinds_.size(), false);
+/// As far as a polynomial may be off: a tenth of a mean's standard error, of pseudo-random hoops. The better
+/// one is off by some tenth of that.
+void MadeLine::measure_spreads() {
+  const std::size_t each = numbers_.size();
+  spreads_.assign(count_ * each, 0.0);
   for (std::size_t j = 0; j < count_; ++j)
-    for (std::size_t k = 0; k < samples_; ++k) asked_[place(j, k)] = begins(j, k);
-  bool asks = true;
-  while (asks) {
+    for (std::size_t n = 0; n < each; ++n) {
+      double count = 0.0, sum = 0.0, squares = 0.0, about = 0.0;
+      for (std::size_t k = 0; k < samples_; ++k) {
+        if (!kinds_[place(j, k)].is_solved) continue;
+        const double value = number(j, k, n);
+        if (!(value == value)) continue;
+        if (count == 0.0) about = value;
+        count += 1.0, sum += value - about, squares += (value - about) * (value - about);
+      }
+      if (count > 1.0)
+        spreads_[j * each + n] = 0.1 * std::sqrt(std::max(squares - sum * sum / count, 0.0) / (count - 1.0) /
+                                                 static_cast<double>(samples_));
+    }
+}
+
+void MadeLine::refine(std::span<const Design> drawings, MadeHoops& hoops, const Solver& solve) {
+  for (bool asks = true; asks;) {
     solve_asked(drawings, hoops, solve);
+    if (spreads_.empty()) measure_spreads();
     asks = false;
     for (std::size_t k = 0; k < samples_; ++k)
       for_gaps(k, [&](std::size_t from, std::size_t to, const Stencil& nodes) {
@@ -177,6 +215,68 @@ void MadeLine::solve(std::span<const Design> drawings, DrawnLine line, MadeHoops
         asked_[place((from + to) / 2, k)] = asks = true;
       });
   }
+}
+
+/// Whether a hoop that was solved by chance differs from what its neighbours of that kind, twice as far from
+/// each other as those that anything is interpolated between, would have made of it.
+bool MadeLine::surprises(std::size_t drawing, std::size_t hoop) const {
+  const std::size_t last = count_ - 1, from = drawing > stride ? drawing - stride : 0,
+                    to = std::min(drawing + stride, last);
+  const Kind &here = kinds_[place(drawing, hoop)], &around = kinds_[place(from, hoop)];
+  if (!around.is_like(kinds_[place(to, hoop)])) return false;  // it would have been halved
+  Stencil nodes{from, to, from, from};
+  std::size_t filled = 2;
+  const auto add = [&](std::size_t node) {
+    if (filled < nodes.size() && around.is_like(kinds_[place(node, hoop)])) nodes[filled++] = node;
+  };
+  if (from > 0) add(from > stride ? from - stride : 0);
+  if (to < last) add(std::min(to + stride, last));
+  if (filled < nodes.size() && to + stride < last) add(std::min(to + 2 * stride, last));
+  if (filled < nodes.size() && from > stride) add(from > 2 * stride ? from - 2 * stride : 0);
+  if (!is_smooth(from, to, nodes, hoop)) return false;
+  if (!around.is_like(here)) return true;
+  constexpr double loose = 16.0;  // between nodes twice as far from each other
+  const auto cubic = weights<4>(nodes, x_[drawing]);
+  for (std::size_t n = 0; n < numbers_.size(); ++n) {
+    double told = 0.0;
+    for (std::size_t i = 0; i < cubic.size(); ++i) told += cubic[i] * number(nodes[i], hoop, n);
+    const double value = number(drawing, hoop, n);
+    if (value == value && !is_alike(told, value, loose * spreads_[drawing * numbers_.size() + n]))
+      return true;
+  }
+  return false;
+}
+
+bool MadeLine::ask_where_surprised() {
+  std::vector<char> all(count_, false);  // of a drawing's hoops
+  for (std::size_t j = 1; j + 1 < count_; ++j)
+    for (std::size_t k = 0; k < samples_; ++k)
+      if (is_by_chance(j, k) && surprises(j, k)) {
+        const std::size_t first = j > stride ? j - stride : 0, end = std::min(j + stride + 1, count_);
+        std::fill(all.begin() + static_cast<std::ptrdiff_t>(first),
+                  all.begin() + static_cast<std::ptrdiff_t>(end), true);
+        break;
+      }
+  bool asks = false;
+  for (std::size_t j = 0; j < count_; ++j)
+    for (std::size_t k = 0; k < samples_ && all[j]; ++k)
+      if (!kinds_[place(j, k)].is_solved) asked_[place(j, k)] = asks = true;
+  return asks;
+}
+
+void MadeLine::solve(std::span<const Design> drawings, DrawnLine line, MadeHoops& hoops,
+                     const Solver& solve) {
+  count_ = drawings.size(), samples_ = hoops.samples(), solved_ = 0;
+  x_ = std::move(line.along);
+  kinds_.assign(count_ * samples_, {});
+  values_.resize(kinds_.size() * numbers_.size());
+  spreads_.clear();
+  asked_.assign(kinds_.size(), false);
+  for (std::size_t j = 0; j < count_; ++j)
+    for (std::size_t k = 0; k < samples_; ++k)
+      asked_[place(j, k)] = j == 0 || j + 1 == count_ || is_by_chance(j, k);
+  refine(drawings, hoops, solve);
+  if (ask_where_surprised()) refine(drawings, hoops, solve);
   for (std::size_t k = 0; k < samples_; ++k)
     for_gaps(
         k, [&](std::size_t from, std::size_t to, const Stencil& nodes) { interpolate(from, to, nodes, k); });
@@ -189,27 +289,6 @@ Outcome MadeLine::outcome(std::size_t drawing, std::size_t hoop) const {
   outcome.spurious_first_jump = kind.spurious, outcome.candidates = kind.candidates;
   for (std::size_t n = 0; n < numbers_.size(); ++n) outcome.*numbers_[n] = number(drawing, hoop, n);
   return outcome;
-}
-
-auto MadeLine::met_by_chance(std::size_t drawing, std::size_t hoop) const -> std::optional<Met> {
-  if (drawing < stride || drawing + stride >= count_ || (drawing + scrambled(hoop)) % stride != 0) return {};
-  const Kind& here = kinds_[place(drawing, hoop)];
-  const std::size_t from = drawing - stride, to = drawing + stride;
-  const Kind& around = kinds_[place(from, hoop)];
-  if (!around.is_like(kinds_[place(to, hoop)]) || around.is_like(here)) return {};
-  Stencil nodes{from, to, from, from};
-  std::size_t filled = 2;
-  for (const std::size_t node : {from - stride, to + stride, to + 2 * stride, from - 2 * stride})
-    if (node < count_ && filled < nodes.size() && around.is_like(kinds_[place(node, hoop)]))
-      nodes[filled++] = node;
-  if (!is_smooth(from, to, nodes, hoop)) return {};
-  std::size_t first = drawing, last = drawing;  // of its band
-  while (kinds_[place(first - 1, hoop)].is_like(here)) --first;
-  while (kinds_[place(last + 1, hoop)].is_like(here)) ++last;
-  // A band as wide as that holds a hoop that is solved in so many of `stride` cases, and this one in one.
-  const std::size_t width = last - first + 1;
-  if (width >= stride) return {};
-  return Met{outcome(from, hoop), static_cast<double>(stride - width)};
 }
 
 }  // namespace leapmap

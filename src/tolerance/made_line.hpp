@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Hoops made after a line of drawings that differ in one parameter only.
+/// Hoops made after a line of drawings that differ in one parameter only, by steps shorter than its
+/// tolerance.
 ///
 /// The same hoop of each sample, made after one drawing after the other, changes smoothly but where it passes
-/// a discontinuity. Every fourth of these is solved, beginning anywhere. What lies between two of them is
+/// a discontinuity. Every eighth of these is solved, beginning anywhere. What lies between two of them is
 /// interpolated where the four nearest agree in status, lift-offs and phases, and where a polynomial of one
-/// degree less tells the same; else it is halved. A band of other outcomes that lies between two solved hoops
-/// is passed over: how often, those that were met by chance tell.
+/// degree less tells the same; else it is halved.
+///
+/// A band of other outcomes between two solved hoops would be passed over. But of the hoops made after a
+/// drawing one in eight is solved, whichever: where one of these is not what would have been interpolated in
+/// its place, every hoop of the drawings around is solved.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -23,12 +26,11 @@
 namespace leapmap {
 
 /// The drawings of a line are those from the first on that differ in one parameter, which ascends or
-/// descends; so many at least are worth it.
+/// descends.
 struct DrawnLine {
   std::size_t count = 1;
-  std::vector<double> along;  ///< the parameter, of each
-
-  static constexpr std::size_t least = 8;
+  std::size_t place = 0;      ///< of the parameter among a design's numbers
+  std::vector<double> along;  ///< its values; empty: there is but one drawing
 };
 DrawnLine line_of(std::span<const Design> drawings);
 
@@ -38,21 +40,16 @@ class MadeLine {
   /// numbers: of jumps, that are asked for besides status, lift-offs and phases.
   explicit MadeLine(std::vector<double Outcome::*> numbers) : numbers_(std::move(numbers)) {}
 
+  /// Whether so many drawings so near each other are worth interpolating.
+  static bool suits(const DrawnLine& line, std::span<const Design> drawings, const MadeHoops& hoops);
   /// Solves or interpolates every hoop made after each of the drawings.
   void solve(std::span<const Design> drawings, DrawnLine line, MadeHoops& hoops, const Solver& solve);
   /// Of the drawing's hoop of that number.
   Outcome outcome(std::size_t drawing, std::size_t hoop) const;
-  /// A hoop that was solved by chance, and not for what lies around it.
-  struct Met {
-    Outcome instead;  ///< what would have been interpolated
-    double others;    ///< how many were passed over for each that was met
-  };
-  /// Unset: it was not, or it lies in no band that can be passed over.
-  std::optional<Met> met_by_chance(std::size_t drawing, std::size_t hoop) const;
   /// How many hoops were solved.
   std::size_t solved() const { return solved_; }
   /// Of how many hoops one is solved at least.
-  static constexpr std::size_t stride = 8;
+  static constexpr std::size_t stride = 8, shortest_line = 4 * stride;
 
  private:
   struct Kind {
@@ -73,7 +70,13 @@ class MadeLine {
   double number(std::size_t drawing, std::size_t hoop, std::size_t n) const {
     return values_[place(drawing, hoop) * numbers_.size() + n];
   }
-  bool begins(std::size_t drawing, std::size_t hoop) const;
+  /// Solved by chance, whatever lies around.
+  bool is_by_chance(std::size_t drawing, std::size_t hoop) const;
+  void refine(std::span<const Design> drawings, MadeHoops& hoops, const Solver& solve);
+  /// Asks for all hoops around those that are not what was expected. False: there are none.
+  bool ask_where_surprised();
+  bool surprises(std::size_t drawing, std::size_t hoop) const;
+  void measure_spreads();
   void solve_asked(std::span<const Design> drawings, MadeHoops& hoops, const Solver& solve);
   void keep(std::size_t at, const Outcome& outcome);
   /// The gap after a solved drawing of a hoop: the next one that is solved. gap(from, to, stencil).
@@ -90,6 +93,7 @@ class MadeLine {
   std::vector<double> x_;  // of each drawing
   std::vector<Kind> kinds_;
   std::vector<double> values_;
+  std::vector<double> spreads_;  // of each number after each drawing: how well it may be known
   std::vector<char> asked_;
   std::vector<std::size_t> nodes_;  // of the hoop in hand, those that are solved
   std::vector<Design> made_, batch_;

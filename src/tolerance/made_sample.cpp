@@ -174,8 +174,7 @@ MadeTally::MadeTally(const std::vector<Goal>& goals, const std::vector<const Fie
       jumped_(samples),
       failed_(samples),
       missed_(goals.size(), MadeShare(samples)),
-      samples_(quantities.size()),
-      hoops_(static_cast<double>(samples)) {
+      samples_(quantities.size()) {
   for (const Field* field : quantities) quantities_.push_back(std::get<Quantity>(field->source).member);
 }
 
@@ -183,7 +182,6 @@ void MadeTally::clear() {
   for (MadeShare* share : {&reached_, &jumped_, &failed_}) share->clear();
   for (MadeShare& share : missed_) share.clear();
   for (MadeSample& sample : samples_) sample.clear();
-  passed_over_ = 0.0;
 }
 
 bool MadeTally::reaches_all(const Design& design, const Outcome& outcome) const {
@@ -207,8 +205,7 @@ void MadeTally::add(const Design& design, const Outcome& outcome, std::size_t re
 }
 
 Estimate MadeTally::known(const Estimate& share) const {
-  return {share.value,
-          std::hypot(share.error, failed_.counted() > 0 ? failed() : 0.0, passed_over_ / hoops_)};
+  return {share.value, failed_.counted() > 0 ? std::hypot(share.error, failed()) : share.error};
 }
 
 MadeSample& MadeTally::of(double Outcome::*quantity) {

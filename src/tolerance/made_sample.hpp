@@ -74,8 +74,6 @@ class MadeTally {
 
   void clear();
   void add(const Design& design, const Outcome& outcome, std::size_t replicate);
-  /// So many more hoops were taken to reach the goals, or not to, that in truth do not, or do.
-  void note_passed_over(double hoops) { passed_over_ += hoops; }
   bool reaches_all(const Design& design, const Outcome& outcome) const;
 
   Estimate yield() const { return known(reached_.share()); }
@@ -94,7 +92,6 @@ class MadeTally {
   MadeShare reached_, jumped_, failed_;
   std::vector<MadeShare> missed_;
   std::vector<MadeSample> samples_;
-  double hoops_, passed_over_ = 0.0;
 };
 
 }  // namespace leapmap

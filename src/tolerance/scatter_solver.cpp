@@ -100,9 +100,6 @@ void ScatterSolver::take_from_line(std::size_t number, const Design& drawn) {
     for (std::size_t k = 0; k < count; ++k) {
       outcomes_[k] = line_->outcome(number, first + k);
       tally_.add(made_[k], outcomes_[k], (first + k) / hoops_.a_replicate());
-      const auto met = line_->met_by_chance(number, first + k);
-      if (met && tally_.reaches_all(made_[k], outcomes_[k]) != tally_.reaches_all(made_[k], met->instead))
-        tally_.note_passed_over(met->others);
     }
     note_worst(std::span(outcomes_).first(count));
   }
@@ -127,7 +124,7 @@ void ScatterSolver::solve(std::span<const Design> designs, MadeColumns& columns,
   for (std::size_t i = 0; i < designs.size();) {
     DrawnLine line = line_ && bodies.empty() ? line_of(designs.subspan(i)) : DrawnLine{};
     const std::size_t end = i + line.count;
-    if (line.count < DrawnLine::least) {
+    if (!line_ || !MadeLine::suits(line, designs.subspan(i, line.count), hoops_)) {
       for (; i < end; ++i) {
         solve_one(designs[i], bodies.empty() ? nullptr : &bodies[i]);
         put(i);

@@ -2,11 +2,13 @@
 """leapmap prove: maps are judged, cells and hoops within tolerances proved, and what cannot be is refused."""
 import json
 import re
+import shutil
+import subprocess
 
 import h5py
 import numpy as np
 import pytest
-from support.program import TOP, leapmap, sweep
+from support.program import PROGRAM, TOP, leapmap, sweep
 
 WITHIN = [
     w for key, law in (("slope", '{uniform="1 deg"}'), ("mass_ratio", '{uniform="2 %"}'),
@@ -211,3 +213,11 @@ minimize = ["mass_ratio"]
     assert best["worst_case"]["jump_height"][1] == pytest.approx(0.8, abs=1e-3), "no more than it has to"
     missed = leapmap("design", tmp_path / "q.toml", "--set", "goal.worst_case={at_least=2.9}")
     assert missed.returncode == 1 and "worst_case at least 2.9" in missed.stdout
+
+
+def test_a_program_without_its_module_says_where_that_should_be(tmp_path):
+    alone = shutil.copy(PROGRAM, tmp_path / "leapmap")
+    done = subprocess.run([alone, "hop", "--prove"], capture_output=True, text=True)
+    assert done.returncode == 2 and done.stderr.startswith("leapmap: leapmap-late.so cannot be loaded: ")
+    assert f"allowed: beside the program, or in {tmp_path.parent}/lib" in done.stderr
+    assert subprocess.run([alone, "hop"], capture_output=True).returncode == 0

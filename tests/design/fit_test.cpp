@@ -138,6 +138,14 @@ INSTANTIATE_TEST_SUITE_P(Models, Motions, ::testing::Values(Friction::sticking, 
                            return model.param == Friction::sticking ? "sticking" : "coulomb";
                          });
 
+TEST(FilmMotions, OfManyThousandFramesHaveDerivativesToo) {
+  const Scene scene{.friction = Friction::coulomb};
+  const auto times = even_times(1.2, 20'000);
+  constexpr std::array by{by_mu_static};
+  EXPECT_EQ(motion_at<FewDual>({.slope = 0.15, .mu_static = 0.4}, scene, times, 1e-7, by).size(),
+            times.size());
+}
+
 TEST(LeastSquaresFits, FindTheCertifiedValuesOfMisra1a) {
   // NIST StRD, Misra1a: y = b1 (1 - exp(-b2 x)); b1 = 2.3894212918e2, b2 = 5.5015643181e-4,
   // sum 1.2455138894e-1.

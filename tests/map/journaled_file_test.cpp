@@ -102,6 +102,17 @@ TEST(JournaledFile, HoldsWhatWasCommittedAndNothingElse) {
   }
 }
 
+TEST(JournaledFile, AfterAFailureNoCommitSucceedsNotEvenOneOfNothing) {
+  const testing::TemporaryFolder folder;
+  JournaledFile file(folder / "file", Access::create);
+  file.write(0, Bytes(30, std::byte{1}));
+  file.resize(30);
+  file.commit();
+  EXPECT_NO_THROW(file.commit());
+  file.note_failure("a read failed");
+  EXPECT_THROW(file.commit(), IoError);
+}
+
 TEST(JournaledFile, KilledAtAnyMomentIsFoundAsOfACommit) {
   const testing::TemporaryFolder folder;
   for (unsigned seed = 0; seed < 4; ++seed) {

@@ -78,6 +78,21 @@ TEST(MapFile, AnUnfinishedMapLeavesNothingBehind) {
   EXPECT_FALSE(fs::exists(folder / "map.h5.part"));
 }
 
+TEST(MapFile, AWholeMapThatCannotBeGivenItsNameIsKeptAsItsPart) {
+  const testing::TemporaryFolder folder;
+  const MapLayout layout = small_layout();
+  const Tiling tiling({3, 5}, {1, 5});
+  {
+    MapWriter writer = MapWriter::begin(folder / "map.h5", layout, tiling, small_attributes, false);
+    testing::write_rest(writer, layout, tiling);
+    folder.write("map.h5", "somebody else's by now");
+    EXPECT_THROW(static_cast<void>(writer.finish({})), IoError);
+    EXPECT_EQ(writer.committed(), 15u);
+  }
+  EXPECT_EQ(fs::file_size(folder / "map.h5"), 22u);
+  EXPECT_TRUE(MapReader(folder / "map.h5.part").is_whole());
+}
+
 TEST(MapFile, AKeptPartShowsItsHolesAsNotComputed) {
   const testing::TemporaryFolder folder;
   const Tiling tiling({3, 5}, {1, 5});
