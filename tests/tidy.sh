@@ -11,5 +11,5 @@ changed=$(git diff --name-only --diff-filter=d "$base" -- 'src/*.cpp' | grep -v 
 all=$(echo "$changed" | wc -l)
 some=$(echo "$changed" | head -n "$most")
 echo "tidy: $(echo "$some" | wc -l) of $all sources that have changed since $base"
-echo "$some" | xargs -P 2 -n 2 sh -c 'clang-tidy --quiet "$@" -- -std=c++20 -fopenmp -Isrc -Ibuild/release/generated -DLEAPMAP_VERSION=\"\" -DLEAPMAP_GIT_REVISION=\"\" \
+echo "$some" | xargs -P 2 -n 2 sh -c 'clang-tidy --quiet "$@" -- -std=c++20 -fopenmp -Isrc -Ibuild/release/generated -DLEAPMAP_VERSION=\"\" -DLEAPMAP_GIT_REVISION=\"\" -DLEAPMAP_MODULE_FOLDER=\"\" \
   -isystem /usr/include/hdf5/serial -isystem /usr/include/eigen3' tidy

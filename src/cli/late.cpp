@@ -20,15 +20,23 @@ namespace {
 /// Beside the program, as it is built, or where it is installed.
 const Late* loaded() {
   constexpr std::string_view module = "leapmap-late.so";
-  const std::filesystem::path folder = std::filesystem::canonical("/proc/self/exe").parent_path(),
+  std::error_code unknown;  // if the program's own file is gone
+  const std::filesystem::path folder = std::filesystem::canonical("/proc/self/exe", unknown).parent_path(),
                               installed = folder.parent_path() / LEAPMAP_MODULE_FOLDER;
-  std::string why;
+  std::string why = unknown ? "where the program is, is not known: " + unknown.message() : "";
   for (const auto& path : {folder / module, installed / module}) {
-    if (void* const library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL))
-      return reinterpret_cast<LateEntry>(::dlsym(library, late_entry))();
+    if (unknown) break;
+    if (void* const library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL)) {
+      const auto entry = reinterpret_cast<LateEntry>(::dlsym(library, late_entry));
+      if (const Late* const late = entry ? entry() : nullptr;
+          late && late->revision == std::string_view(LEAPMAP_GIT_REVISION))
+        return late;
+      why = path.string() + ": is of another revision than the program";
+      break;
+    }
     why += fmt::format("{}{}", why.empty() ? "" : "; ", ::dlerror());
   }
-  throw InputError(fmt::format("{} cannot be loaded: {}; allowed: beside the program, or in {}", module, why,
+  throw InputError(fmt::format("{} cannot be loaded: {}; copy it beside the program, or to {}", module, why,
                                installed.string()));
 }
 

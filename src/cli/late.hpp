@@ -14,6 +14,7 @@ namespace leapmap::cli {
 
 /// What the module is asked for, by one C function; the program's own functions of these names ask it.
 struct Late {
+  const char* revision;  ///< of the sources: another one may lay out a design in another way
   /// may_stop: throws Stopped where a stop is asked for.
   Proof (*walked)(const DesignBox&, std::span<double Design::*const>, const Scene&, bool times,
                   void (*may_stop)());

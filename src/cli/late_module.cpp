@@ -18,19 +18,19 @@ void throw_if_stopped() { program_may_stop(); }
 namespace cli {
 namespace {
 
-constexpr Late late{[](const DesignBox& box, std::span<double Design::*const> varying, const Scene& scene,
-                       bool times, void (*may_stop)()) -> Proof {
+Proof walked_here(const DesignBox& box, std::span<double Design::*const> varying, const Scene& scene,
+                  bool times, void (*may_stop)()) {
 #ifdef LEAPMAP_HAS_ARB
-                      program_may_stop = may_stop;
-                      return walked(box, varying, scene, times);
+  program_may_stop = may_stop;
+  return walked(box, varying, scene, times);
 #else
-                      static_cast<void>(box), static_cast<void>(varying), static_cast<void>(scene),
-                          static_cast<void>(times);
-                      static_cast<void>(may_stop);
-                      return {};  // never asked: the library says before that it was built without Arb
+  static_cast<void>(box), static_cast<void>(varying), static_cast<void>(scene), static_cast<void>(times);
+  static_cast<void>(may_stop);
+  return {};  // never asked: the library says before that it was built without Arb
 #endif
-                    },
-                    unzipped};
+}
+
+constexpr Late late{LEAPMAP_GIT_REVISION, walked_here, unzipped};
 
 }  // namespace
 }  // namespace cli

@@ -45,16 +45,20 @@ target_precompile_headers(leapmap-program PRIVATE <algorithm> <cmath> <filesyste
   <numeric> <optional>
                                                   <span> <string> <vector> <fmt/format.h>)
 # Arb and libzip come with a module, which is loaded when it is first needed.
-target_compile_definitions(leapmap-program PRIVATE
-  "LEAPMAP_MODULE_FOLDER=\"${CMAKE_INSTALL_LIBDIR}/leapmap\"")
+set_source_files_properties(src/cli/late.cpp src/cli/late_module.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON
+  COMPILE_DEFINITIONS  # a commit compiles two files again
+  "LEAPMAP_MODULE_FOLDER=\"${CMAKE_INSTALL_LIBDIR}/leapmap\";LEAPMAP_GIT_REVISION=\"${revision}\"")
 target_link_options(leapmap-program PRIVATE -Wl,--as-needed)
-add_library(leapmap-late MODULE src/cli/late_module.cpp $<TARGET_OBJECTS:leapmap-late-objects>)
-set_target_properties(leapmap-late PROPERTIES PREFIX "" CXX_VISIBILITY_PRESET hidden)
-target_compile_definitions(leapmap-late PRIVATE $<$<BOOL:${ARB_LIBRARY}>:LEAPMAP_HAS_ARB>)
-target_include_directories(leapmap-late PRIVATE ${PROJECT_SOURCE_DIR}/src)
-target_link_libraries(leapmap-late PRIVATE ${LEAPMAP_LATE_LIBRARIES} fmt::fmt leapmap-options)
-if(NOT LEAPMAP_SANITIZE)  # whose symbols are the program's
-  target_link_options(leapmap-late PRIVATE -Wl,--no-undefined)
+if(LEAPMAP_SOURCES MATCHES "src/film/")  # not for some tests alone
+  add_library(leapmap-late MODULE src/cli/late_module.cpp $<TARGET_OBJECTS:leapmap-late-objects>)
+  set_target_properties(leapmap-late PROPERTIES PREFIX "")
+  target_compile_definitions(leapmap-late PRIVATE $<$<BOOL:${ARB_LIBRARY}>:LEAPMAP_HAS_ARB>)
+  target_include_directories(leapmap-late PRIVATE ${PROJECT_SOURCE_DIR}/src)
+  target_link_libraries(leapmap-late PRIVATE ${LEAPMAP_LATE_LIBRARIES} fmt::fmt leapmap-options)
+  target_link_options(leapmap-late PRIVATE -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/late.map)
+  if(NOT LEAPMAP_SANITIZE)  # whose symbols are the program's
+    target_link_options(leapmap-late PRIVATE -Wl,--no-undefined)
+  endif()
+  add_dependencies(leapmap-program leapmap-late)
+  install(TARGETS leapmap-late DESTINATION ${CMAKE_INSTALL_LIBDIR}/leapmap)
 endif()
-add_dependencies(leapmap-program leapmap-late)
-install(TARGETS leapmap-late DESTINATION ${CMAKE_INSTALL_LIBDIR}/leapmap)

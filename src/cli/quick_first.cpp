@@ -11,7 +11,8 @@ namespace leapmap::cli {
 void add_quick_and_thorough(Command& command, bool& quick, bool& thorough, const std::string& fewer) {
   command.flag("--quick", quick, fmt::format("fewer {}: ten seconds or so; the default", fewer));
   command
-      .flag("--thorough", thorough, "then once more with all of them: minutes; Ctrl-C keeps the quick table")
+      .flag("--thorough", thorough,
+            "the quick table first, then one with all of them: minutes; Ctrl-C keeps the quick one")
       .excludes("--quick");
 }
 
@@ -22,7 +23,7 @@ int run_quick_first(bool thorough, const std::string& table, const std::function
   };
   if (!run(true)) return interrupted("nothing was written");
   if (!thorough) return 0;
-  say("thorough now; Ctrl-C keeps the table so far\n");
+  say("thorough now; Ctrl-C keeps the quick table\n");
   flush_out();
   return run(false) ? 0 : interrupted(table + " holds the quick run");
 }

@@ -15,6 +15,7 @@
 #include "engine/parallel.hpp"
 #include "engine/places.hpp"
 #include "request/request.hpp"
+#include "request/solver.hpp"
 #include "shards/shard.hpp"
 #include "spec/designs.hpp"
 
@@ -121,6 +122,11 @@ void print_shards(const SweepArguments& arguments, const Spec& spec, const std::
     say("         leapmap sweep ... --shard 1/{0} to --shard {0}/{0}, then leapmap join {1}\n", shards, map);
 }
 
+std::string which_are_solved(const Spec& spec) {
+  const std::string_view along = interpolated_along(spec, request_of(spec));
+  return along.empty() ? "all solved" : fmt::format("some solved, the others interpolated along {}", along);
+}
+
 }  // namespace
 
 void print_plan(const SweepArguments& arguments, const Spec& spec, const std::string& map,
@@ -142,8 +148,8 @@ void print_plan(const SweepArguments& arguments, const Spec& spec, const std::st
   say("designs  {} in {} chunks of {}\n", grouped(tiling.designs()), grouped(tiling.size()),
       fmt::join(tiling.tile_shape(), " x "));
   if (!spec.scatter.spreads.empty())
-    say("samples  {} manufactured hoops per design\n",
-        grouped(static_cast<std::uint64_t>(spec.scatter.samples)));
+    say("samples  {} manufactured hoops per design, {}\n",
+        grouped(static_cast<std::uint64_t>(spec.scatter.samples)), which_are_solved(spec));
   say("method   {}, tolerance {:g}\n", resolved_method(spec), spec.numerics.tolerance);
   std::vector<std::string_view> fields;
   for (const Field* field : layout.fields) fields.push_back(field->name);

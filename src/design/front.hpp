@@ -52,7 +52,7 @@ class Fronts {
 };
 
 /// Rounds of small steps from the fronts' places, along them and off them, so many a round, until they bring
-/// nothing more.
+/// nothing more to the few outcomes that are left.
 void refine(Judge& judge, Fronts& fronts, std::size_t most, std::size_t a_round, std::uint64_t seed);
 
 }  // namespace leapmap

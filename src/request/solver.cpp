@@ -8,6 +8,7 @@
 #include "gaits/settle.hpp"
 #include "hoop/units.hpp"
 #include "model/model.hpp"
+#include "spec/designs.hpp"
 #include "spec/spec.hpp"
 #include "trajectory/clearance.hpp"
 #include "trajectory/sequence.hpp"
@@ -229,6 +230,16 @@ bool can_be_interpolated(const Request& request) {
          std::ranges::none_of(request.columns, is_extreme) &&
          std::ranges::none_of(sample.columns,
                               [](const Field* field) { return field->of_way || field->of_wall; });
+}
+
+std::string_view interpolated_along(const Spec& spec, const Request& request) {
+  const DesignSpace space(spec);
+  if (!wants_samples(request) || !can_be_interpolated(request) || spec.axes.empty() || space.varies_body())
+    return {};
+  std::vector<Design> row;
+  for (std::size_t i = 0; i < spec.axes.back().values.size(); ++i) row.push_back(space.at(i));
+  const MadeHoops hoops(request.scatter, request.hoop, request.held, points_of(request.scatter));
+  return MadeLine::suits(line_of(row), row, hoops) ? spec.axes.back().key : std::string_view();
 }
 
 ScatterSolver scatter_solver_of(const Request& request, std::shared_ptr<const SobolPoints> points,

@@ -24,12 +24,14 @@ Solver follow_up(const Request& request);
 /// The same with the derivatives among the columns, if any.
 GradientSolver make_gradient_solver(const Request& request);
 
-/// A solver for the request's statistics of manufactured hoops, after these points. make: of what solves the
-/// hoops.
 /// Whether hoops made after lines of designs may be interpolated: where to solve one takes long, and phases
 /// tell on which side of each discontinuity it is. The worst of them may not.
 bool can_be_interpolated(const Request& request);
+/// The axis along which they are in a spec's map; empty: every hoop is solved.
+std::string_view interpolated_along(const Spec& spec, const Request& request);
 
+/// A solver for the request's statistics of manufactured hoops, after these points. make: of what solves the
+/// hoops.
 ScatterSolver scatter_solver_of(const Request& request, std::shared_ptr<const SobolPoints> points,
                                 const std::function<Solver(const Request&)>& make = make_solver);
 

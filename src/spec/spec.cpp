@@ -453,6 +453,8 @@ void refuse_contradictions(const std::vector<Entry>& entries, const Spec& spec) 
     if (entry.option->section == "scatter" && spec.scatter.spreads.empty())
       refuse(entry, "has no effect without tolerances",
              "with a parameter in [scatter], for example slope = { normal = \"1 deg\" }");
+    if (key == "interpolate" && !model_of(spec.scene).slips)
+      refuse(entry, "has no effect without friction: every hoop is solved", "with friction = \"coulomb\"");
     const double set = key == "fixed_step"           ? spec.numerics.fixed_step
                        : key == "absolute_tolerance" ? spec.numerics.absolute_tolerance
                                                      : 0.0;

@@ -44,6 +44,7 @@ std::string text_of(const Axis& axis, bool spaced) {
 /// The value of an option; unset: its line is left out.
 std::optional<std::string> value_of(const Option& option, Spec& spec) {
   if (option.section == "scatter" && spec.scatter.spreads.empty()) return std::nullopt;
+  if (option.key == "interpolate" && !model_of(spec.scene).slips) return std::nullopt;
   return std::visit(
       [&](const auto& slot) -> std::optional<std::string> {
         using Slot = std::decay_t<decltype(slot)>;

@@ -40,6 +40,8 @@ class MadeHoops {
   std::size_t samples() const { return points_->samples(); }
   std::size_t a_replicate() const { return points_->a_replicate(); }
   std::size_t spreads() const { return spreads_.size(); }
+  /// Whether they differ in size or mass.
+  bool makes_bodies() const { return makes_bodies_; }
 
   /// What is made after this drawing from now on. Each spread takes a dimension of the points of its own, by
   /// the order of parameters, whatever that of the spreads; from_dimension[k]: k, or k plus the number of

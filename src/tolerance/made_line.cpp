@@ -66,7 +66,7 @@ DrawnLine line_of(std::span<const Design> drawings) {
 }
 
 bool MadeLine::suits(const DrawnLine& line, std::span<const Design> drawings, const MadeHoops& hoops) {
-  if (line.count < shortest_line) return false;
+  if (line.count < shortest_line || hoops.samples() < fewest_samples) return false;
   for (std::size_t j = 0; j < line.count; ++j) {
     // Only so do the hoops of several drawings see the same discontinuities.
     const double width = hoops.width_of(drawings[j], [&](double Design::*member) {
@@ -90,7 +90,7 @@ void MadeLine::keep(std::size_t at, const Outcome& outcome) {
 
 void MadeLine::solve_asked(std::span<const Design> drawings, MadeHoops& hoops, const Solver& solve) {
   constexpr std::size_t at_once = 1024;
-  made_.resize(samples_), outcomes_.resize(at_once);
+  outcomes_.resize(at_once);
   batch_.clear(), places_.clear();
   const auto run = [&] {
     throw_if_stopped();
@@ -99,14 +99,13 @@ void MadeLine::solve_asked(std::span<const Design> drawings, MadeHoops& hoops, c
     batch_.clear(), places_.clear();
   };
   for (std::size_t j = 0; j < count_; ++j) {
-    const auto row = asked_.begin() + static_cast<std::ptrdiff_t>(place(j, 0));
-    if (std::none_of(row, row + static_cast<std::ptrdiff_t>(samples_), [](char asked) { return asked; }))
-      continue;
+    const auto row = std::span(asked_).subspan(place(j, 0), samples_);
+    if (std::none_of(row.begin(), row.end(), [](char asked) { return asked; })) continue;
     hoops.draw(drawings[j]);
-    hoops.fill(0, made_);
     for (std::size_t k = 0; k < samples_; ++k) {
-      if (!std::exchange(asked_[place(j, k)], false)) continue;
-      batch_.push_back(made_[k]), places_.push_back(place(j, k));
+      if (!std::exchange(row[k], false)) continue;
+      hoops.fill(k, {&batch_.emplace_back(), 1});
+      places_.push_back(place(j, k));
       if (batch_.size() == at_once) run();
     }
   }
@@ -184,23 +183,24 @@ void MadeLine::interpolate(std::size_t from, std::size_t to, const Stencil& node
 }
 
 /// As far as a polynomial may be off: a tenth of a mean's standard error, of pseudo-random hoops. The better
-/// one is off by some tenth of that.
+/// one is off by some tenth of that. What few hoops far from the others add to the spread is left out.
 void MadeLine::measure_spreads() {
   const std::size_t each = numbers_.size();
   spreads_.assign(count_ * each, 0.0);
+  std::vector<double> values;
   for (std::size_t j = 0; j < count_; ++j)
     for (std::size_t n = 0; n < each; ++n) {
-      double count = 0.0, sum = 0.0, squares = 0.0, about = 0.0;
-      for (std::size_t k = 0; k < samples_; ++k) {
-        if (!kinds_[place(j, k)].is_solved) continue;
-        const double value = number(j, k, n);
-        if (!(value == value)) continue;
-        if (count == 0.0) about = value;
-        count += 1.0, sum += value - about, squares += (value - about) * (value - about);
-      }
-      if (count > 1.0)
-        spreads_[j * each + n] = 0.1 * std::sqrt(std::max(squares - sum * sum / count, 0.0) / (count - 1.0) /
-                                                 static_cast<double>(samples_));
+      values.clear();
+      for (std::size_t k = 0; k < samples_; ++k)
+        if (kinds_[place(j, k)].is_solved && number(j, k, n) == number(j, k, n))
+          values.push_back(number(j, k, n));
+      constexpr std::size_t few = 8;
+      if (values.size() < few) continue;
+      std::sort(values.begin(), values.end());
+      constexpr double quarters_of_normal = 1.349;
+      const double middle_half = values[values.size() * 3 / 4] - values[values.size() / 4];
+      spreads_[j * each + n] =
+          0.1 * middle_half / quarters_of_normal / std::sqrt(static_cast<double>(samples_));
     }
 }
 
@@ -223,7 +223,6 @@ bool MadeLine::surprises(std::size_t drawing, std::size_t hoop) const {
   const std::size_t last = count_ - 1, from = drawing > stride ? drawing - stride : 0,
                     to = std::min(drawing + stride, last);
   const Kind &here = kinds_[place(drawing, hoop)], &around = kinds_[place(from, hoop)];
-  if (!around.is_like(kinds_[place(to, hoop)])) return false;  // it would have been halved
   Stencil nodes{from, to, from, from};
   std::size_t filled = 2;
   const auto add = [&](std::size_t node) {
@@ -233,6 +232,7 @@ bool MadeLine::surprises(std::size_t drawing, std::size_t hoop) const {
   if (to < last) add(std::min(to + stride, last));
   if (filled < nodes.size() && to + stride < last) add(std::min(to + 2 * stride, last));
   if (filled < nodes.size() && from > stride) add(from > 2 * stride ? from - 2 * stride : 0);
+  if (!around.is_like(kinds_[place(to, hoop)]) || filled < nodes.size()) return is_narrow(drawing, hoop);
   if (!is_smooth(from, to, nodes, hoop)) return false;
   if (!around.is_like(here)) return true;
   constexpr double loose = 16.0;  // between nodes twice as far from each other
@@ -247,12 +247,25 @@ bool MadeLine::surprises(std::size_t drawing, std::size_t hoop) const {
   return false;
 }
 
+/// Whether a solved hoop lies in a band of its kind that fits between two hoops that are solved, amid
+/// another.
+bool MadeLine::is_narrow(std::size_t drawing, std::size_t hoop) const {
+  const Kind& here = kinds_[place(drawing, hoop)];
+  std::size_t first = drawing, last = drawing;
+  while (first > 0 && here.is_like(kinds_[place(first - 1, hoop)])) --first;
+  while (last + 1 < count_ && here.is_like(kinds_[place(last + 1, hoop)])) ++last;
+  if (first == 0 || last + 1 == count_ || last - first + 1 >= stride) return false;
+  const Kind &before = kinds_[place(first - 1, hoop)], &after = kinds_[place(last + 1, hoop)];
+  return before.is_solved && after.is_solved && before.is_like(after);
+}
+
 bool MadeLine::ask_where_surprised() {
-  std::vector<char> all(count_, false);  // of a drawing's hoops
+  constexpr std::size_t around = stride / 2;  // each drawing has hoops of its own that are met by chance
+  std::vector<char> all(count_, false);       // of a drawing's hoops
   for (std::size_t j = 1; j + 1 < count_; ++j)
     for (std::size_t k = 0; k < samples_; ++k)
       if (is_by_chance(j, k) && surprises(j, k)) {
-        const std::size_t first = j > stride ? j - stride : 0, end = std::min(j + stride + 1, count_);
+        const std::size_t first = j > around ? j - around : 0, end = std::min(j + around + 1, count_);
         std::fill(all.begin() + static_cast<std::ptrdiff_t>(first),
                   all.begin() + static_cast<std::ptrdiff_t>(end), true);
         break;
@@ -276,19 +289,17 @@ void MadeLine::solve(std::span<const Design> drawings, DrawnLine line, MadeHoops
     for (std::size_t k = 0; k < samples_; ++k)
       asked_[place(j, k)] = j == 0 || j + 1 == count_ || is_by_chance(j, k);
   refine(drawings, hoops, solve);
-  if (ask_where_surprised()) refine(drawings, hoops, solve);
+  while (ask_where_surprised()) refine(drawings, hoops, solve);
   for (std::size_t k = 0; k < samples_; ++k)
     for_gaps(
         k, [&](std::size_t from, std::size_t to, const Stencil& nodes) { interpolate(from, to, nodes, k); });
 }
 
-Outcome MadeLine::outcome(std::size_t drawing, std::size_t hoop) const {
+void MadeLine::put(std::size_t drawing, std::size_t hoop, Outcome& outcome) const {
   const Kind& kind = kinds_[place(drawing, hoop)];
-  Outcome outcome;
   outcome.phase_sequence = kind.phases, outcome.status = kind.status;
   outcome.spurious_first_jump = kind.spurious, outcome.candidates = kind.candidates;
   for (std::size_t n = 0; n < numbers_.size(); ++n) outcome.*numbers_[n] = number(drawing, hoop, n);
-  return outcome;
 }
 
 }  // namespace leapmap

@@ -9,7 +9,7 @@
 ///
 /// A band of other outcomes between two solved hoops would be passed over. But of the hoops made after a
 /// drawing one in eight is solved, whichever: where one of these is not what would have been interpolated in
-/// its place, every hoop of the drawings around is solved.
+/// its place, every hoop of the drawings beside is solved, too.
 #pragma once
 
 #include <array>
@@ -44,12 +44,14 @@ class MadeLine {
   static bool suits(const DrawnLine& line, std::span<const Design> drawings, const MadeHoops& hoops);
   /// Solves or interpolates every hoop made after each of the drawings.
   void solve(std::span<const Design> drawings, DrawnLine line, MadeHoops& hoops, const Solver& solve);
-  /// Of the drawing's hoop of that number.
-  Outcome outcome(std::size_t drawing, std::size_t hoop) const;
+  /// What was asked for of the drawing's hoop of that number; the rest stays as it is.
+  void put(std::size_t drawing, std::size_t hoop, Outcome& outcome) const;
   /// How many hoops were solved.
   std::size_t solved() const { return solved_; }
   /// Of how many hoops one is solved at least.
   static constexpr std::size_t stride = 8, shortest_line = 4 * stride;
+  /// Fewer hoops would meet too little by chance.
+  static constexpr std::size_t fewest_samples = 128;
 
  private:
   struct Kind {
@@ -76,6 +78,7 @@ class MadeLine {
   /// Asks for all hoops around those that are not what was expected. False: there are none.
   bool ask_where_surprised();
   bool surprises(std::size_t drawing, std::size_t hoop) const;
+  bool is_narrow(std::size_t drawing, std::size_t hoop) const;
   void measure_spreads();
   void solve_asked(std::span<const Design> drawings, MadeHoops& hoops, const Solver& solve);
   void keep(std::size_t at, const Outcome& outcome);
@@ -96,7 +99,7 @@ class MadeLine {
   std::vector<double> spreads_;  // of each number after each drawing: how well it may be known
   std::vector<char> asked_;
   std::vector<std::size_t> nodes_;  // of the hoop in hand, those that are solved
-  std::vector<Design> made_, batch_;
+  std::vector<Design> batch_;
   std::vector<std::size_t> places_;
   std::vector<Outcome> outcomes_;
 };

@@ -96,10 +96,11 @@ void ScatterSolver::take_from_line(std::size_t number, const Design& drawn) {
   cut_off_ = hoops_.draw(drawn);
   for (std::size_t first = 0; first < hoops_.samples(); first += made_.size()) {
     const std::size_t count = std::min(made_.size(), hoops_.samples() - first);
-    hoops_.fill(first, std::span(made_).first(count));
+    if (hoops_.makes_bodies()) hoops_.fill(first, std::span(made_).first(count));
     for (std::size_t k = 0; k < count; ++k) {
-      outcomes_[k] = line_->outcome(number, first + k);
-      tally_.add(made_[k], outcomes_[k], (first + k) / hoops_.a_replicate());
+      line_->put(number, first + k, outcomes_[k]);
+      // Limits in SI hang on size and mass, which are as drawn unless bodies are made.
+      tally_.add(hoops_.makes_bodies() ? made_[k] : drawn, outcomes_[k], (first + k) / hoops_.a_replicate());
     }
     note_worst(std::span(outcomes_).first(count));
   }

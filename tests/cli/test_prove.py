@@ -219,5 +219,5 @@ def test_a_program_without_its_module_says_where_that_should_be(tmp_path):
     alone = shutil.copy(PROGRAM, tmp_path / "leapmap")
     done = subprocess.run([alone, "hop", "--prove"], capture_output=True, text=True)
     assert done.returncode == 2 and done.stderr.startswith("leapmap: leapmap-late.so cannot be loaded: ")
-    assert f"allowed: beside the program, or in {tmp_path.parent}/lib" in done.stderr
+    assert f"; copy it beside the program, or to {tmp_path.parent}/lib" in done.stderr
     assert subprocess.run([alone, "hop"], capture_output=True).returncode == 0

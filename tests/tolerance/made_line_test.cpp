@@ -117,7 +117,7 @@ TEST(MadeLines, NeedOneHoopOfEightWhereNothingBreaks) {
       outcomes[i].jump_height = 1.0 + 1e-3 * std::pow(designs[i].slope, 3);
     }
   };
-  const Scatter scatter{{{"slope", Spread::Law::normal, 0.01}}, 64};
+  const Scatter scatter{{{"slope", Spread::Law::normal, 0.01}}, 256};
   const BothWays both = told(scatter, line_from({}, &Design::slope, 1e-3, 81), cubic);
   EXPECT_LT(both.solved, 1.0 / MadeLine::stride + 0.03);
   for (std::size_t j = 0; j < 81; ++j)
