@@ -502,7 +502,7 @@ Spec parse(std::string_view text, const std::string& origin, const std::vector<s
   if (lenient && std::ranges::find(entries, "motor_in_flight", &Entry::key) == entries.end())
     spec.scene.motor_in_flight = false;
   // Before 1.19 every hoop was solved.
-  if (lenient && !spec.scatter.spreads.empty() &&
+  if (lenient && !spec.scatter.spreads.empty() && model_of(spec.scene).slips &&
       std::ranges::find(entries, "interpolate", &Entry::key) == entries.end())
     spec.scatter.interpolate = false;
   return spec;
