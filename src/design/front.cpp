@@ -64,10 +64,9 @@ void Front::add(std::vector<Place> places) {
   std::ranges::stable_sort(places, {}, cost_of);
   std::vector<Place> all;
   all.reserve(places_.size() + places.size());
-  std::ranges::merge(
-      std::ranges::subrange(std::move_iterator(places_.begin()), std::move_iterator(places_.end())),
-      std::ranges::subrange(std::move_iterator(places.begin()), std::move_iterator(places.end())),
-      std::back_inserter(all), {}, cost_of, cost_of);
+  std::merge(std::move_iterator(places_.begin()), std::move_iterator(places_.end()),
+             std::move_iterator(places.begin()), std::move_iterator(places.end()), std::back_inserter(all),
+             [](const Place& a, const Place& b) { return cost_of(a) < cost_of(b); });
   places_.clear();
   double least = HUGE_VAL;
   for (Place& place : all)
