@@ -20,12 +20,14 @@ namespace {
 /// Beside the program, as it is built, or where it is installed.
 const Late* loaded() {
   constexpr std::string_view module = "leapmap-late.so";
-  std::error_code unknown;  // if the program's own file is gone
+  std::error_code unknown;
   const std::filesystem::path folder = std::filesystem::canonical("/proc/self/exe", unknown).parent_path(),
                               installed = folder.parent_path() / LEAPMAP_MODULE_FOLDER;
-  std::string why = unknown ? "where the program is, is not known: " + unknown.message() : "";
+  if (unknown)
+    throw InputError(fmt::format("{} cannot be found, as the program's own file is gone: {}; start it again",
+                                 module, unknown.message()));
+  std::string why;
   for (const auto& path : {folder / module, installed / module}) {
-    if (unknown) break;
     if (void* const library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL)) {
       const auto entry = reinterpret_cast<LateEntry>(::dlsym(library, late_entry));
       if (const Late* const late = entry ? entry() : nullptr;

@@ -34,7 +34,7 @@ struct PrecisionArguments {
   PrecisionOptions options;
   Friction friction = Friction::sticking;
   Locking locking = Locking::required;
-  bool quick = false, thorough = false, designs_given = false;
+  bool thorough = false, designs_given = false;
 };
 
 void print_head() {
@@ -193,7 +193,7 @@ void add_precision(CommandLine& line, int& status) {
           [arguments](const std::string& word) { arguments->friction = find_model(word)->friction; },
           "contact model; coulomb: with random mu_static and mu_kinetic; default: sticking")
       .check(one_of(frictions));
-  add_quick_and_thorough(command, arguments->quick, arguments->thorough, "designs and settings");
+  add_quick_and_thorough(command, arguments->thorough, "designs and settings");
   add_no_lock(command, arguments->locking);
   command.footer(
       "Errors are the largest over the designs with the right status, flag and number of lift-offs. The "

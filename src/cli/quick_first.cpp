@@ -8,8 +8,9 @@
 
 namespace leapmap::cli {
 
-void add_quick_and_thorough(Command& command, bool& quick, bool& thorough, const std::string& fewer) {
-  command.flag("--quick", quick, fmt::format("fewer {}: ten seconds or so; the default", fewer));
+void add_quick_and_thorough(Command& command, bool& thorough, const std::string& fewer) {
+  command.flag(
+      "--quick", [] {}, fmt::format("fewer {}: ten seconds or so; the default", fewer));
   command
       .flag("--thorough", thorough,
             "the quick table first, then one with all of them: minutes; Ctrl-C keeps the quick one")

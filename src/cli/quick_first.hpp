@@ -10,7 +10,7 @@
 namespace leapmap::cli {
 
 /// Adds --quick and --thorough, which exclude each other; fewer: of what a quick run has fewer.
-void add_quick_and_thorough(Command& command, bool& quick, bool& thorough, const std::string& fewer);
+void add_quick_and_thorough(Command& command, bool& thorough, const std::string& fewer);
 
 /// Runs quickly, then, if asked, once more thoroughly. run(quick) writes the table; false: a signal came
 /// first. Returns the exit status; what was written stays.

@@ -29,7 +29,7 @@ struct StabilityArguments {
   std::string table = "maps/stability.h5";
   std::vector<std::string> cases;  // empty: all
   Locking locking = Locking::required;
-  bool quick = false, thorough = false;
+  bool thorough = false;
 };
 
 /// The rows of one method in one case, which stand together, and their verdict.
@@ -175,7 +175,7 @@ void add_stability(CommandLine& line, int& status) {
   command.value("--cases", arguments->cases, "cases to run, separated by commas; default: all of those below")
       .with_commas()
       .check(one_of(cases));
-  add_quick_and_thorough(command, arguments->quick, arguments->thorough, "positions in each case");
+  add_quick_and_thorough(command, arguments->thorough, "positions in each case");
   add_no_lock(command, arguments->locking);
   command.footer(
       "Each case approaches a difficult design:\n"

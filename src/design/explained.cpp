@@ -331,10 +331,10 @@ bool Explained::event_differences(std::span<const double> at, std::span<double> 
   return true;
 }
 
-bool Explained::event_residuals(std::span<const double> at, std::span<double> told,
+bool Explained::event_residuals(std::span<const double> at, std::span<double> asked,
                                 std::span<double> jacobian) const {
-  std::vector<double> untold(told.empty() ? measured_.events.size() : 0);
-  const std::span<double> residuals = told.empty() ? std::span(untold) : told;
+  std::vector<double> unasked(asked.empty() ? measured_.events.size() : 0);
+  const std::span<double> residuals = asked.empty() ? std::span(unasked) : asked;
   if (!jacobian.empty() && !model_of(spec_.scene).gradients)
     return event_differences(at, residuals, jacobian);
   const Design design = design_at(at);

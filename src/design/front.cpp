@@ -174,8 +174,8 @@ double volume_of(std::span<const Cost> front, const Cost& corner) {
   return volume;
 }
 
-/// Whether a front dominates about as much as it did: what it dominates more is told up to the corner beyond
-/// both, so that longer ends count.
+/// Whether a front dominates about as much as it did before. Both are measured up to the same corner, which
+/// lies beyond both, so that longer ends count.
 bool is_as_before(std::span<const Cost> before, std::span<const Cost> now) {
   constexpr double alike = 1e-6;  // gaps between a front's places are worth more
   const Cost corner{std::max(before.back()[0], now.back()[0]), std::max(before.front()[1], now.front()[1])};

@@ -25,7 +25,7 @@ namespace {
 std::size_t piece_of(const Request& request) {
   constexpr std::size_t most = 1024;
   if (!wants_samples(request)) return most;
-  const std::size_t most_hoops = can_be_interpolated(request) ? 1 << 18 : 1 << 16;  // long lines
+  const std::size_t most_hoops = can_be_interpolated(request) ? MadeLine::most_hoops : 1 << 16;
   return std::clamp<std::size_t>(most_hoops / static_cast<std::size_t>(request.scatter.samples), 1, most);
 }
 
@@ -161,12 +161,12 @@ double seconds_per_design(const Spec& spec, const Request& request, double secon
   // Few at a time while it is not known how long one takes: an integration may need seconds. But what is
   // interpolated along lines takes less than one by one.
   const bool in_lines = !interpolated_along(spec, request).empty();
-  const std::size_t line = in_lines ? std::min(spec.axes.back().values.size(), piece_of(request)) : 1;
+  const std::size_t row = in_lines ? spec.axes.back().values.size() : 1,
+                    line = in_lines ? std::min(row, piece_of(request)) : 1;
   std::vector<Design> some(in_lines ? line : wants_samples(request) ? 1 : 8);
   std::chrono::duration<double> passed{0};
   std::size_t solved = 0;
   while (passed.count() < seconds) {
-    const std::size_t row = in_lines ? spec.axes.back().values.size() : 1;
     for (std::size_t i = 0; i < some.size(); i += line) {
       const std::size_t first = pick(random) / row * row;
       for (std::size_t k = 0; k < line; ++k) some[i + k] = space.at(first + k);

@@ -13,14 +13,6 @@ namespace {
 // Relative errors of motions. Derivatives only lead to where residuals are least, and tell errors.
 constexpr double fine = 1e-11, coarse = 1e-6, of_derivatives = 1e-7;
 
-template <class S>
-S parameter_of(double value, std::size_t number, std::span<const std::size_t> by) {
-  if constexpr (has_derivatives<S>)
-    if (const auto found = std::ranges::find(by, number); found != by.end())
-      return S::parameter(value, static_cast<std::size_t>(found - by.begin()));
-  return S(value);
-}
-
 /// Means over numbers of one kind: of points in the plane's axes and of their positions.
 struct Positions {
   double X = 0.0, Y = 0.0, value = 0.0, count = 0.0;
@@ -63,10 +55,10 @@ bool FilmModel::see(const Design& design, const Camera& camera, const Question& 
   }
   const std::vector<MotionAt<S>> motion = motion_at<S>(design, scene_, times, accuracy, asked.by_design);
   if (motion.empty() && !times.empty()) return false;
-  const S held_at = parameter_of<S>(design.release_angle, by_release_angle, asked.by_design);
+  const S held_at = seeded<S>(design.release_angle, by_release_angle, asked.by_design);
   const MotionAt<S> held{held_at, S(0.0), S(0.0), S(0.0), 0.0, 0.0, 0.0};
   const double second = time_unit(scene_), R = scene_.radius;
-  const S L = parameter_of<S>(design.offset_ratio, by_offset_ratio, asked.by_design);
+  const S L = seeded<S>(design.offset_ratio, by_offset_ratio, asked.by_design);
   seen.clear();
   std::size_t at = 0;
   for (const std::size_t number : asked.numbers) {

@@ -27,17 +27,9 @@ class Seeded {
   }
 
   S parameter(std::size_t number) const {
-    double value = design_.*differentiable[number];
-    if constexpr (has_derivatives<S>) {
-      // One parameter where it follows the other.
-      if (number == by_mu_kinetic && kinetic_follows(design_))
-        value = design_.mu_static, number = by_mu_static;
-      const auto found = std::find(by_.begin(), by_.end(), number);
-      return found == by_.end() ? S(value)
-                                : S::parameter(value, static_cast<std::size_t>(found - by_.begin()));
-    } else {
-      return number == by_mu_kinetic && kinetic_follows(design_) ? design_.mu_static : value;
-    }
+    // One parameter where it follows the other.
+    if (number == by_mu_kinetic && kinetic_follows(design_)) number = by_mu_static;
+    return seeded<S>(design_.*differentiable[number], number, by_);
   }
   Hoop<S> hoop(const Scene& scene) const {
     if constexpr (has_derivatives<S>) {

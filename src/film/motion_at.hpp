@@ -23,6 +23,14 @@ struct MotionAt {
 
 /// Derivatives by up to so many parameters take a third of the time that those by all of them take.
 using FewDual = Dual<double, 4>;
+/// A number that is the parameter of that place, with its derivative if it is among those.
+template <class S>
+S seeded(double value, std::size_t place, std::span<const std::size_t> by) {
+  if constexpr (has_derivatives<S>)
+    for (std::size_t k = 0; k < by.size(); ++k)
+      if (by[k] == place) return S::parameter(value, k);
+  return S(value);
+}
 /// The places of all parameters.
 inline constexpr auto by_every_parameter = [] {
   std::array<std::size_t, differentiable.size()> places{};

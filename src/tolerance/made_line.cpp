@@ -7,18 +7,11 @@
 #include <optional>
 #include <utility>
 
+#include "numerics/mixed.hpp"
 #include "support/stop.hpp"
 
 namespace leapmap {
 namespace {
-
-/// Numbers by chance that go with a whole number: SplitMix64.
-std::uint64_t scrambled(std::uint64_t x) {
-  x += 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
 
 /// But for their roundings.
 bool is_alike(double a, double b, double spread) {
@@ -66,26 +59,26 @@ DrawnLine line_of(std::span<const Design> drawings) {
 }
 
 bool MadeLine::suits(const DrawnLine& line, std::span<const Design> drawings, const MadeHoops& hoops) {
-  if (line.count < shortest_line || hoops.samples() < fewest_samples) return false;
-  for (std::size_t j = 0; j < line.count; ++j) {
+  const bool enough = line.count >= shortest_line && hoops.samples() >= fewest_samples;
+  if (!enough || hoops.samples() * shortest_line > most_hoops) return false;
+  for (std::size_t j = 0; j + 1 < line.count; ++j) {
     // Only so do the hoops of several drawings see the same discontinuities.
     const double width = hoops.width_of(drawings[j], [&](double Design::*member) {
       return &(drawings[j].*member) == reinterpret_cast<const double*>(&drawings[j]) + line.place;
     });
-    if (j + 1 < line.count && !(std::abs(line.along[j + 1] - line.along[j]) <= width)) return false;
+    if (!(std::abs(line.along[j + 1] - line.along[j]) <= width)) return false;
   }
   return true;
 }
 
 bool MadeLine::is_by_chance(std::size_t drawing, std::size_t hoop) const {
-  return (drawing + scrambled(hoop)) % stride == 0;
+  return (drawing + mixed(hoop)) % stride == 0;
 }
 
 void MadeLine::keep(std::size_t at, const Outcome& outcome) {
   kinds_[at] = {outcome.phase_sequence, outcome.status, outcome.spurious_first_jump, outcome.candidates,
                 true};
   for (std::size_t n = 0; n < numbers_.size(); ++n) values_[at * numbers_.size() + n] = outcome.*numbers_[n];
-  ++solved_;
 }
 
 void MadeLine::solve_asked(std::span<const Design> drawings, MadeHoops& hoops, const Solver& solve) {
@@ -279,7 +272,7 @@ bool MadeLine::ask_where_surprised() {
 
 void MadeLine::solve(std::span<const Design> drawings, DrawnLine line, MadeHoops& hoops,
                      const Solver& solve) {
-  count_ = drawings.size(), samples_ = hoops.samples(), solved_ = 0;
+  count_ = drawings.size(), samples_ = hoops.samples();
   x_ = std::move(line.along);
   kinds_.assign(count_ * samples_, {});
   values_.resize(kinds_.size() * numbers_.size());

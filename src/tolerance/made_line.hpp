@@ -8,8 +8,8 @@
 /// degree less tells the same; else it is halved.
 ///
 /// A band of other outcomes between two solved hoops would be passed over. But of the hoops made after a
-/// drawing one in eight is solved, whichever: where one of these is not what would have been interpolated in
-/// its place, every hoop of the drawings beside is solved, too.
+/// drawing one in eight is solved whatever lies around it. If such a hoop is not what would have been
+/// interpolated in its place, every hoop made after the drawings beside is solved, too.
 #pragma once
 
 #include <array>
@@ -46,12 +46,12 @@ class MadeLine {
   void solve(std::span<const Design> drawings, DrawnLine line, MadeHoops& hoops, const Solver& solve);
   /// What was asked for of the drawing's hoop of that number; the rest stays as it is.
   void put(std::size_t drawing, std::size_t hoop, Outcome& outcome) const;
-  /// How many hoops were solved.
-  std::size_t solved() const { return solved_; }
   /// Of how many hoops one is solved at least.
   static constexpr std::size_t stride = 8, shortest_line = 4 * stride;
   /// Fewer hoops would meet too little by chance.
   static constexpr std::size_t fewest_samples = 128;
+  /// Of a line, for which there is memory, and after which a stop need not wait long.
+  static constexpr std::size_t most_hoops = 1 << 18;
 
  private:
   struct Kind {
@@ -92,7 +92,7 @@ class MadeLine {
   std::array<double, N> weights(const Stencil& nodes, double x) const;
 
   std::vector<double Outcome::*> numbers_;
-  std::size_t samples_ = 0, count_ = 0, solved_ = 0;
+  std::size_t samples_ = 0, count_ = 0;
   std::vector<double> x_;  // of each drawing
   std::vector<Kind> kinds_;
   std::vector<double> values_;

@@ -92,7 +92,6 @@ void ScatterSolver::solve_one(const Design& drawn, const Body* body) {
 
 void ScatterSolver::take_from_line(std::size_t number, const Design& drawn) {
   tally_.clear();
-  worst_ = HUGE_VAL;
   cut_off_ = hoops_.draw(drawn);
   for (std::size_t first = 0; first < hoops_.samples(); first += made_.size()) {
     const std::size_t count = std::min(made_.size(), hoops_.samples() - first);
@@ -102,7 +101,6 @@ void ScatterSolver::take_from_line(std::size_t number, const Design& drawn) {
       // Limits in SI hang on size and mass, which are as drawn unless bodies are made.
       tally_.add(hoops_.makes_bodies() ? made_[k] : drawn, outcomes_[k], (first + k) / hoops_.a_replicate());
     }
-    note_worst(std::span(outcomes_).first(count));
   }
 }
 

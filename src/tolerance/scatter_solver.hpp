@@ -41,7 +41,7 @@ class MadeColumns {
 class ScatterSolver {
  public:
   /// quantities: of which the columns are, besides shares; solver: tells these and what the goals are of.
-  /// interpolates: hoops made after lines of drawings may be interpolated.
+  /// interpolates: hoops made after lines of drawings may be interpolated; not with a column of the worst.
   ScatterSolver(const Scatter& scatter, const std::optional<Body>& hoop, std::vector<SameInSi> held,
                 std::shared_ptr<const SobolPoints> points, const std::vector<Goal>& goals,
                 const std::vector<const Field*>& quantities, Solver solver, bool interpolates = false);
