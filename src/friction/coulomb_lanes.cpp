@@ -17,19 +17,25 @@ void CoulombLanes<T>::solve(std::span<const Design> designs, const Scene& scene,
 
 template <class T>
 void CoulombLanes<T>::solve(Start start, std::span<const Design> designs, std::span<ContactState<S>> states,
-                            const Scene& scene, std::span<Outcome> outcomes) {
+                            const Scene& scene, std::span<Outcome> outcomes, const GoesOn& goes_on) {
   const CoulombObserver nobody;
   constexpr std::size_t width = Lanes<T>::count;
   find_pivot_zeros(designs, scene);
-  free_.clear();
+  // What a call left that ended by an exception is nobody's.
+  free_.clear(), flying_.clear(), rebounding_.clear(), rolling_.clear(), sliding_.clear();
   for (std::size_t place = most_on_their_way; place-- > 0;)
     free_.push_back(static_cast<std::uint32_t>(place));
-  const auto take_up = [&](std::uint32_t place, const std::optional<NextPhase>& next) {
-    if (next) return go_on(place, *next);
+  const auto take_up = [&](std::uint32_t place, std::optional<NextPhase> next) {
     auto& [design, machine] = on_their_way_[place];
-    outcomes[design] = machine->outcome();
-    if (outcomes[design].status == Status::jumped) states[design] = machine->at();
-    free_.push_back(place);
+    while (!next) {
+      outcomes[design] = machine->outcome();
+      const bool jumps = outcomes[design].status == Status::jumped;
+      if (jumps) states[design] = machine->at();
+      if (!jumps || !goes_on || !goes_on(design)) return free_.push_back(place);
+      machine.emplace(designs[design], states[design], scene, nobody);
+      next = machine->begin(Start::landing);
+    }
+    go_on(place, *next);
   };
   for (std::size_t unbegun = 0; unbegun < designs.size() || free_.size() < most_on_their_way;) {
     throw_if_stopped();

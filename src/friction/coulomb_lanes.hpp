@@ -27,9 +27,9 @@ class CoulombLanes {
   /// Solves designs[i] into outcomes[i].
   void solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes);
   /// The same from where states[i] have designs[i], which have just landed there or are released; moves each
-  /// to just after the landing of its jump.
+  /// to just after the landing of its jump, and goes on from there if goes_on is set and says so.
   void solve(Start start, std::span<const Design> designs, std::span<ContactState<S>> states,
-             const Scene& scene, std::span<Outcome> outcomes);
+             const Scene& scene, std::span<Outcome> outcomes, const GoesOn& goes_on = {});
 
  private:
   static constexpr std::size_t most_on_their_way = 64;

@@ -26,6 +26,13 @@ JumpSolver<double> jumps(const Scene& scene, double tolerance, const Wanted&) {
              std::span<Outcome> outcomes) { lanes->solve(start, designs, states, scene, outcomes); };
 }
 
+LongJumpSolver long_jumps(const Scene& scene, double tolerance, const Wanted&) {
+  return [lanes = std::make_shared<CoulombLanes<Batch>>(tolerance), scene](
+             Start start, std::span<const Design> designs, std::span<ContactState<double>> states,
+             std::span<Outcome> outcomes,
+             const GoesOn& goes_on) { lanes->solve(start, designs, states, scene, outcomes, goes_on); };
+}
+
 std::function<double(const Design&)> effort(const Scene& scene, bool derivatives) {
   // Panels of slides are nearly all of it: a hoop that rocks to rest slides some hundred times.
   const auto panels = std::make_shared<double>();

@@ -19,6 +19,9 @@ Solver exact(const Scene& scene, double tolerance, const Wanted& wanted);
 /// The same from any state to the next jump's landing.
 JumpSolver<double> jumps(const Scene& scene, double tolerance, const Wanted& wanted);
 
+/// The same from landing to landing, each design as fast as it goes.
+LongJumpSolver long_jumps(const Scene& scene, double tolerance, const Wanted& wanted);
+
 /// The same with derivatives (gradient.hpp).
 GradientSolver gradients(const Scene& scene, double tolerance, const Wanted& wanted,
                          const GradientWanted& asked);

@@ -26,6 +26,7 @@ class RollingLanes {
   void begin(std::uint32_t place, const Hoop<S>& hoop, const S& mu_static, const ContactState<S>& at,
              const S& runway);
   std::size_t waiting() const { return waiting_.size() + timed_rolls_.waiting(); }
+  void clear() { waiting_.clear(), timed_rolls_.clear(); }
   /// Takes some a step further, and adds those that end to `ended`.
   void pass(std::vector<EndedPhase<S>>& ended);
 

@@ -30,6 +30,7 @@ class SlidingLanes {
   void begin(std::uint32_t place, const Hoop<S>& hoop, const S& mu_kinetic, const PivotZeros<S>& zeros,
              const ContactState<S>& at, const S& runway, int direction);
   std::size_t waiting() const { return waiting_.size(); }
+  void clear() { waiting_.clear(); }
   /// Takes some slides a panel further, and adds those that end to `ended`.
   void pass(std::vector<EndedPhase<S>>& ended);
 

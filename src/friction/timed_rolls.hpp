@@ -26,6 +26,7 @@ class TimedRolls {
   /// over an angle x > 0 past them.
   void begin(const Roll<T>& rolls, const T& x, const Places& places, unsigned which);
   std::size_t waiting() const { return waiting_.size(); }
+  void clear() { waiting_.clear(); }
 
   /// What a phase took; NaN: its panels cannot tell.
   struct Timed {

@@ -257,7 +257,7 @@ class Search {
   /// Whether a jump from there, N being below zero, lands so that it is below zero again.
   bool bounces_again(const Hoop<double>& hoop, const Landed& start) {
     std::array<Landed, 1> at{start};
-    map_.next(Start::landing, {&design_, 1}, at, outcomes_);
+    map_.follow(Start::landing, {&design_, 1}, at, outcomes_, [](std::size_t) { return false; });
     if (outcomes_[0].status != Status::jumped) return false;
     const Trig<double> phi = trig(at[0].angle);
     return normal_force(hoop, phi, at[0].spin, angular_acceleration(hoop, phi, at[0].spin)) <= 0.0;

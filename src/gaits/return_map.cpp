@@ -69,20 +69,22 @@ JumpSolvers jump_solvers(const Scene& scene, double tolerance) {
   const Model& model = model_of(alone);
   const auto jumps = need(model, &Model::jumps, "semi-analytic solver of later jumps");
   const auto dual_jumps = need(model, &Model::dual_jumps, "derivatives of later jumps");
-  return {jumps(alone, tolerance, untimed), jumps(alone, tolerance, {}), dual_jumps(alone, tolerance)};
+  return {model.long_jumps ? model.long_jumps(alone, tolerance, untimed)
+                           : in_rounds(jumps(alone, tolerance, untimed)),
+          jumps(alone, tolerance, {}), dual_jumps(alone, tolerance)};
 }
 
-void ReturnMap::next(Start start, std::span<const Design> designs, std::span<Landed> states,
-                     std::vector<Outcome>& outcomes) {
+void ReturnMap::follow(Start start, std::span<const Design> designs, std::span<Landed> states,
+                       std::vector<Outcome>& outcomes, const GoesOn& goes_on) {
   outcomes.resize(designs.size());
-  solvers_.jumps(start, designs, states, outcomes);
-  for (std::size_t i = 0; i < designs.size(); ++i) {
-    if (outcomes[i].status == Status::jumped && is_beyond(scene_, states[i]))
+  solvers_.jumps(start, designs, states, outcomes, [&](std::size_t i) {
+    if (is_beyond(scene_, states[i]))
       outcomes[i].status = Status::no_jump;
-    if (outcomes[i].status == Status::jumped && is_of_no_flight(outcomes[i]))
+    else if (is_of_no_flight(outcomes[i]))
       outcomes[i].status = Status::indeterminate;
     states[i] = reduced(states[i]);
-  }
+    return outcomes[i].status == Status::jumped && goes_on(i);
+  });
 }
 
 bool ReturnMap::go_round(const Design& design, int period, Landed& at, StateMatrix& slope) {

@@ -59,7 +59,8 @@ inline constexpr Wanted untimed{
 
 /// How designs go on from one landing to the next, each jump alone.
 struct JumpSolvers {
-  JumpSolver<double> jumps, timed_jumps;  ///< untimed, and with all that there is
+  LongJumpSolver jumps;            ///< untimed
+  JumpSolver<double> timed_jumps;  ///< with all that there is
   DualJumpSolver duals;
 };
 /// Those of the scene's model. tolerance: relative, of times.
@@ -72,10 +73,10 @@ class ReturnMap {
   ReturnMap(const Scene& scene, JumpSolvers solvers)
       : scene_(each_jump_alone(scene)), solvers_(std::move(solvers)) {}
 
-  /// Takes designs from their landings, or releases, to their next landings, reduced; outcomes tell which
-  /// jumped: one beyond the runway did not.
-  void next(Start start, std::span<const Design> designs, std::span<Landed> states,
-            std::vector<Outcome>& outcomes);
+  /// Takes designs from their landings, or releases, to their next landings, reduced, and on where goes_on
+  /// says so; outcomes tell which jumped last: one beyond the runway did not.
+  void follow(Start start, std::span<const Design> designs, std::span<Landed> states,
+              std::vector<Outcome>& outcomes, const GoesOn& goes_on);
 
   /// `period` jumps on from a state, with the derivative by it. False: it does not make them, or the
   /// derivative is not known.

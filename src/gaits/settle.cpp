@@ -2,6 +2,7 @@
 #include "gaits/settle.hpp"
 
 #include <array>
+#include <cassert>
 #include <cmath>
 
 #include "support/stop.hpp"
@@ -22,65 +23,62 @@ void tell(const Orbit& orbit, Outcome& outcome) {
 }  // namespace
 
 void GaitSolver::solve(std::span<const Design> designs, std::span<Outcome> outcomes) {
-  std::vector<bool> found(designs.size());
-  settle(designs, [&](std::size_t i, const Orbit& orbit) { tell(orbit, outcomes[i]), found[i] = true; });
-  look_on();
+  std::vector<bool> has_gait(designs.size());
+  follow(designs, [&](std::size_t i, const Orbit& orbit) { tell(orbit, outcomes[i]), has_gait[i] = true; });
   for (std::size_t i = 0; i < designs.size(); ++i) {
-    const bool unknown = ends_[i] == Status::failed || ends_[i] == Status::indeterminate;
-    if (!found[i]) outcomes[i].gait_period = unknown ? Outcome::no_gait : 0;
-  }
-  Orbit orbit;
-  for (std::size_t k = 0; k < going_.size(); ++k) {
-    Outcome& outcome = outcomes[going_[k]];
-    outcome.gait_period = Outcome::no_gait;
-    if (find_orbit(some_[k], seen_[k], orbit)) tell(orbit, outcome);
+    if (has_gait[i]) continue;
+    const Status last = ends_[i].status;
+    const bool stops = last != Status::jumped && last != Status::failed && last != Status::indeterminate;
+    outcomes[i].gait_period = stops ? 0 : Outcome::no_gait;
   }
 }
 
 bool GaitSolver::orbit_of(const Design& design, Orbit& orbit) {
-  bool found = false;
-  settle({&design, 1}, [&](std::size_t, const Orbit& early) { orbit = early, found = true; });
-  if (found) return true;
-  look_on();
-  return !going_.empty() && find_orbit(design, seen_[0], orbit);
+  bool has_gait = false;
+  follow({&design, 1}, [&](std::size_t, const Orbit& found) { orbit = found, has_gait = true; });
+  return has_gait;
 }
 
-/// Leaves those designs that go on for so many jumps, and whose orbit is not plain before: a transient that
-/// shrinks by the same factor from round to round need not be followed to its end.
-void GaitSolver::settle(std::span<const Design> designs,
+/// Follows each design until its jumps end or its orbit is plain: a transient that shrinks by the same factor
+/// from round to round need not be followed to its end. After scene_.settle jumps it is looked for.
+void GaitSolver::follow(std::span<const Design> designs,
                         const std::function<void(std::size_t, const Orbit&)>& found) {
-  going_.clear(), states_.clear(), ends_.assign(designs.size(), Status::jumped);
-  some_.assign(designs.begin(), designs.end());
-  for (std::size_t i = 0; i < designs.size(); ++i)
-    going_.push_back(i), states_.push_back(released<double>(designs[i]));
-  seen_.assign(designs.size(), {});
-  constexpr long first_look = 24, most_seen = 16;
-  long next_look = first_look;
-  for (long jump = 1; jump <= scene_.settle && !going_.empty(); ++jump) {
+  assert(scene_.settle > 0 && scene_.most_period > 0);
+  courses_.assign(designs.size(), {});
+  states_.clear();
+  for (const Design& design : designs) states_.push_back(released<double>(design));
+  Orbit orbit;
+  map_.follow(Start::release, designs, states_, ends_, [&](std::size_t i) {
     throw_if_stopped();
-    jump_on(jump == 1 ? Start::release : Start::landing);
-    if (jump > next_look - most_seen)
-      for (std::size_t k = 0; k < going_.size(); ++k) seen_[k].push_back(states_[k]);
-    if (jump < next_look) continue;
-    next_look *= 2;
-    take_out_settled(found);
-  }
-  for (auto& landings : seen_) landings.clear();
+    const bool more = goes_on(designs[i], states_[i], courses_[i], orbit);
+    if (courses_[i].settled) found(i, orbit);
+    return more;
+  });
+  for (std::size_t i = 0; i < designs.size(); ++i)
+    if (ends_[i].status == Status::jumped && !courses_[i].settled &&
+        find_orbit(designs[i], courses_[i].seen, orbit))
+      found(i, orbit);
 }
 
-/// Tells the orbits of designs that are as good as on them, and leaves the others.
-void GaitSolver::take_out_settled(const std::function<void(std::size_t, const Orbit&)>& found) {
-  Orbit orbit;
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < going_.size(); ++k) {
-    if (is_settled(some_[k], seen_[k], orbit)) {
-      found(going_[k], orbit);
-      continue;
-    }
-    going_[kept] = going_[k], some_[kept] = some_[k], states_[kept] = states_[k];
-    seen_[kept++].clear();
+/// Whether it is to be followed on from where it has landed. Once it is as good as on an orbit it is not, and
+/// has settled.
+bool GaitSolver::goes_on(const Design& design, const Landed& landed, Course& course, Orbit& orbit) {
+  constexpr long most_seen = 16;
+  auto& [jumps, next_look, seen, settled] = course;
+  ++jumps;
+  if (jumps > scene_.settle) {  // as many more as the longest period has
+    seen.push_back(landed);
+    return jumps < scene_.settle + scene_.most_period;
   }
-  going_.resize(kept), some_.resize(kept), states_.resize(kept), seen_.resize(kept);
+  if (jumps > next_look - most_seen) seen.push_back(landed);
+  if (jumps == next_look) {
+    settled = is_settled(design, seen, orbit);
+    if (settled) return false;
+    next_look *= 2;
+    seen.clear();
+  }
+  if (jumps == scene_.settle) seen.assign(1, landed);
+  return true;
 }
 
 /// Whether the last rounds come nearer to an orbit by one factor, which is its multiplier.
@@ -102,29 +100,6 @@ bool GaitSolver::is_settled(const Design& design, std::span<const Landed> seen, 
     return multiplier < contracts && (is_there || std::abs(multiplier - factor) < alike);
   }
   return false;
-}
-
-/// As many jumps more as the longest period has.
-void GaitSolver::look_on() {
-  const auto note = [&] {
-    for (std::size_t k = 0; k < going_.size(); ++k) seen_[k].push_back(states_[k]);
-  };
-  note();
-  for (long jump = 0; jump < scene_.most_period && !going_.empty(); ++jump) jump_on(Start::landing), note();
-}
-
-/// One jump of those that go on; those that make it are left.
-void GaitSolver::jump_on(Start start) {
-  map_.next(start, some_, states_, found_);
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < going_.size(); ++k) {
-    ends_[going_[k]] = found_[k].status;
-    if (found_[k].status != Status::jumped) continue;
-    going_[kept] = going_[k], some_[kept] = some_[k], states_[kept] = states_[k];
-    if (kept != k) seen_[kept] = std::move(seen_[k]);
-    ++kept;
-  }
-  going_.resize(kept), some_.resize(kept), states_.resize(kept), seen_.resize(kept);
 }
 
 namespace {

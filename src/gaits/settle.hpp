@@ -25,21 +25,22 @@ class GaitSolver {
   bool orbit_of(const Design& design, Orbit& orbit);
 
  private:
-  void settle(std::span<const Design> designs, const std::function<void(std::size_t, const Orbit&)>& found);
-  void take_out_settled(const std::function<void(std::size_t, const Orbit&)>& found);
+  /// What is known of a design on its way.
+  struct Course {
+    long jumps = 0, next_look = 24;
+    std::vector<Landed> seen{};  ///< the last landings
+    bool settled = false;
+  };
+  void follow(std::span<const Design> designs, const std::function<void(std::size_t, const Orbit&)>& found);
+  bool goes_on(const Design& design, const Landed& landed, Course& course, Orbit& orbit);
   bool is_settled(const Design& design, std::span<const Landed> seen, Orbit& orbit);
-  void look_on();
-  void jump_on(Start start);
   bool find_orbit(const Design& design, std::span<const Landed> seen, Orbit& orbit);
 
   Scene scene_;
   ReturnMap map_;
-  std::vector<std::size_t> going_;  // designs that still jump
-  std::vector<Design> some_;        // they, and where they landed
+  std::vector<Course> courses_;
   std::vector<Landed> states_;
-  std::vector<std::vector<Landed>> seen_;  // of each of them the last landings
-  std::vector<Outcome> found_;
-  std::vector<Status> ends_;  // of each design: jumped if it goes on
+  std::vector<Outcome> ends_;  // of each design: of its last jump
 };
 
 }  // namespace leapmap

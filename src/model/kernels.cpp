@@ -36,7 +36,7 @@ constinit const std::array list{
     Model{Friction::coulomb, "coulomb", "slips, by Coulomb friction", true, friction::exact, friction::jumps,
           friction::gradients, friction::dual_jumps, friction::integration, friction::integrated_jumps,
           friction::refined, friction::tell_exactly, friction::tell_by_integration, friction::solving,
-          friction::effort, friction::ways},
+          friction::effort, friction::ways, friction::long_jumps},
     with_pendulum(Friction::sticking, "sticking", "never slips", false),
     with_pendulum(Friction::coulomb, "coulomb", "slips, by Coulomb friction", true)};
 

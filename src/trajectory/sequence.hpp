@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <numbers>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -29,6 +30,14 @@ enum class Start { release, landing };
 template <class S>
 using JumpSolver = std::function<void(Start, std::span<const Design>, std::span<ContactState<S>> states,
                                       std::span<Outcome>)>;
+
+/// Takes designs jump after jump: where designs[i] has jumped, goes_on(i) is asked, with its outcome and its
+/// state in place, and may change the state; it goes on from there if that is true. Owns its workspace: one a
+/// thread.
+using GoesOn = std::function<bool(std::size_t i)>;
+using LongJumpSolver =
+    std::function<void(Start, std::span<const Design>, std::span<ContactState<double>> states,
+                       std::span<Outcome>, const GoesOn&)>;
 
 /// A jump solver that takes one design after another, by anything that solves one.
 template <class S, class One>
@@ -54,6 +63,29 @@ bool is_beyond(const Scene& scene, const ContactState<S>& at) {
 /// Whether a jump is none: where hop_height is zero, a flight of no time, after which the hoop is where it
 /// was and would make it again. The plane would have to pull.
 inline bool is_of_no_flight(const Outcome& outcome) { return outcome.flight_time == 0.0; }
+
+/// All designs make their first jump, then all that go on their second one.
+inline LongJumpSolver in_rounds(JumpSolver<double> next) {
+  return [next = std::move(next), going = std::vector<std::size_t>(), some = std::vector<Design>(),
+          at = std::vector<ContactState<double>>(), found = std::vector<Outcome>()](
+             Start start, std::span<const Design> designs, std::span<ContactState<double>> states,
+             std::span<Outcome> outcomes, const GoesOn& goes_on) mutable {
+    going.resize(designs.size());
+    std::iota(going.begin(), going.end(), std::size_t{0});
+    for (; !going.empty(); start = Start::landing) {
+      some.clear(), at.clear(), found.resize(going.size());
+      for (const std::size_t i : going) some.push_back(designs[i]), at.push_back(states[i]);
+      next(start, some, at, found);
+      std::size_t kept = 0;
+      for (std::size_t k = 0; k < going.size(); ++k) {
+        const std::size_t i = going[k];
+        outcomes[i] = found[k], states[i] = at[k];
+        if (outcomes[i].status == Status::jumped && goes_on(i)) going[kept++] = i;
+      }
+      going.resize(kept);
+    }
+  };
+}
 
 /// Follows designs through as many jumps as their scene asks for. A thread's own workspace.
 template <class S>

@@ -155,7 +155,7 @@ void tell_more(const Scene& scene, double tolerance, std::span<const Design> des
   if (page.tells_growth && scene.jumps > 1)
     ErrorGrowth(scene, dual_solver(alone, tolerance)).tell(designs, outcomes);
   if (scene.settle > 0)
-    GaitSolver(scene, {jump_solver(alone, tolerance, untimed), jump_solver(alone, tolerance),
+    GaitSolver(scene, {in_rounds(jump_solver(alone, tolerance, untimed)), jump_solver(alone, tolerance),
                        dual_solver(alone, tolerance)})
         .solve(designs, outcomes);
 }

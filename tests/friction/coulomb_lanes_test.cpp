@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <stdexcept>
+
 #include "friction/coulomb.hpp"
 #include "hoop/sliding.hpp"
 #include "support/aimed.hpp"
@@ -96,6 +99,61 @@ std::optional<Design> about_to_lift_off(std::mt19937_64& random, double left) {
 
 /// The first panel of a slide is as long as any: where an event came right after the release, its time had
 /// the digits of the whole panel, and few of its own.
+TEST(CoulombLanes, JumpsOfDesignsOnTheirOwnAreThoseInRoundsToTheLastBit) {
+  const std::vector<Design> designs = designs_of_three_kinds(200);
+  constexpr int most_jumps = 12;
+  struct Followed {
+    std::vector<Outcome> ends;
+    std::vector<ContactState<double>> states;
+    std::vector<int> jumps;
+  };
+  const auto follow = [&](const LongJumpSolver& solver) {
+    Followed told{std::vector<Outcome>(designs.size()), {}, std::vector<int>(designs.size())};
+    for (const Design& design : designs) told.states.push_back(released<double>(design));
+    solver(Start::release, designs, told.states, told.ends, [&](std::size_t i) {
+      told.states[i] = reduced(told.states[i]);
+      return ++told.jumps[i] < most_jumps;
+    });
+    return told;
+  };
+  const auto lanes = std::make_shared<CoulombLanes<Batch>>(1e-9);
+  const Followed alone = follow([&](Start start, auto of, auto states, auto outcomes, const GoesOn& goes_on) {
+    lanes->solve(start, of, states, coulomb, outcomes, goes_on);
+  });
+  const Followed together = follow(in_rounds([&](Start start, auto of, auto states, auto outcomes) {
+    lanes->solve(start, of, states, coulomb, outcomes);
+  }));
+  EXPECT_EQ(alone.jumps, together.jumps);
+  EXPECT_GT(std::ranges::count(alone.jumps, most_jumps), 20);
+  EXPECT_LT(std::ranges::count(alone.jumps, most_jumps), 180);
+  for (std::size_t i = 0; i < designs.size(); ++i) {
+    EXPECT_EQ(alone.ends[i].status, together.ends[i].status) << i;
+    if (alone.ends[i].status != Status::jumped) continue;
+    EXPECT_EQ(alone.states[i].angle, together.states[i].angle) << i;
+    EXPECT_EQ(alone.states[i].spin, together.states[i].spin) << i;
+    EXPECT_EQ(alone.states[i].slip, together.states[i].slip) << i;
+    EXPECT_EQ(alone.ends[i].jump_height, together.ends[i].jump_height) << i;
+  }
+}
+
+TEST(CoulombLanes, AnExceptionLeavesNothingToTheNextCall) {
+  const std::vector<Design> designs = designs_of_three_kinds(300);
+  std::vector<Outcome> right(designs.size()), told(designs.size());
+  CoulombLanes<Batch>(1e-9).solve(designs, coulomb, right);
+  CoulombLanes<Batch> lanes(1e-9);
+  std::vector<ContactState<double>> states;
+  for (const Design& design : designs) states.push_back(released<double>(design));
+  int jumps = 0;
+  const GoesOn throws = [&](std::size_t) { return ++jumps < 40 ? true : throw std::runtime_error("enough"); };
+  EXPECT_THROW(lanes.solve(Start::release, designs, states, coulomb, told, throws), std::runtime_error);
+  lanes.solve(designs, coulomb, told);
+  for (std::size_t i = 0; i < designs.size(); ++i) {
+    EXPECT_TRUE(same_flags(told[i], right[i])) << i;
+    if (right[i].status != Status::jumped) continue;
+    EXPECT_EQ(told[i].jump_height, right[i].jump_height) << i;
+  }
+}
+
 TEST(CoulombLanes, ShortContactsHaveTheDigitsThatAreAskedFor) {
   constexpr double tolerance = 1e-10;
   CoulombLanes<Batch> lanes(tolerance);
