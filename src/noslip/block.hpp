@@ -67,10 +67,18 @@ struct Block {
     bool returns() const { return leg == 3 || (leg == 2 && turns && released == S(0)); }
   };
 
-  std::vector<IntervalSearch<S>> searches = std::vector<IntervalSearch<S>>(most_designs);
-  std::vector<Found> found = std::vector<Found>(most_designs);
+  std::vector<IntervalSearch<S>> searches;
+  std::vector<Found> found;
   DesignList searching;  ///< designs whose search is not over
   DesignList bouncing;   ///< designs that leave the plane at once after a landing
+
+  /// Makes room for so many designs, where there is less.
+  void make_room(std::size_t designs) {
+    if (designs <= found.size()) return;
+    searches.resize(designs);
+    paths_.resize(designs), releases_.resize(designs), lift_offs_.resize(designs);
+    found.resize(designs);  // last, as it tells that there is room
+  }
 
   /// The lanes of U, T or WideOf<T>, here and below.
   template <class U>
@@ -121,9 +129,9 @@ struct Block {
   static constexpr std::size_t drive =
       6;  // of a hoop's numbers; it follows from others, and makes way for the level
 
-  PackedRows<S, 9> paths_{most_designs};
-  PackedRows<S, 8> releases_{most_designs};
-  PackedRows<S, 6> lift_offs_{most_designs};
+  PackedRows<S, 9> paths_;
+  PackedRows<S, 8> releases_;
+  PackedRows<S, 6> lift_offs_;
 };
 
 }  // namespace leapmap

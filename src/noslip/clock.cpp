@@ -9,6 +9,7 @@ namespace leapmap {
 
 template <class T>
 void Clock<T>::start(const Block<T>& block, const DesignList& designs) {
+  dials_.resize(std::max(dials_.size(), block.found.size()));
   for (std::size_t first = 0; first < designs.size(); first += Lanes<T>::count) {
     const DesignLanes<T> index = lanes_from<T>(designs, first);
     MaskOf<T> hard(false);

@@ -28,7 +28,7 @@ class Clock {
   using S = ScalarOf<T>;
 
   /// Times will be good to the tolerance, relative, or to some roundings.
-  explicit Clock(double tolerance) : time_(tolerance), dials_(Block<T>::most_designs) {}
+  explicit Clock(double tolerance) : time_(tolerance) {}
 
   /// Where the leg of each design begins.
   void start(const Block<T>& block, const DesignList& designs);

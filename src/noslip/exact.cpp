@@ -131,7 +131,7 @@ void ExactSolver<T>::end_leg(std::uint32_t design, Outcome& outcome) {
 /// lift-off on a leg before the last was timed when the hoop turned round.
 template <class T>
 void ExactSolver<T>::take_times(std::span<Outcome> outcomes) {
-  clock_.start(block_, lifted_);
+  clock_.start(block_, wanted_.first_jump_time ? lifted_ : jumped_);
   const auto& found = block_.found;
   const auto jumps_first = [&](std::uint32_t design) {
     return outcomes[design].status == Status::jumped && outcomes[design].candidates == 1;

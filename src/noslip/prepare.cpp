@@ -14,6 +14,7 @@ void prepare(std::span<const Design> designs, std::span<const ContactState<Scala
   using S = ScalarOf<B>;
   using T = WideOf<B>;
   using std::abs, std::atan2;
+  block.make_room(designs.size());
   block.searching.clear(), block.bouncing.clear();
   for (Outcome& outcome : outcomes) outcome = Outcome{};
   for (std::size_t first = 0; first < designs.size(); first += Lanes<T>::count) {

@@ -91,7 +91,8 @@ void store_rows(std::array<T, 8> columns, Row<ScalarOf<T>>* rows, const std::uin
 template <class S, std::size_t N>
 class PackedRows {
  public:
-  explicit PackedRows(std::size_t items) : rows_(items * rows_an_item) {}
+  explicit PackedRows(std::size_t items = 0) { resize(items); }
+  void resize(std::size_t items) { rows_.resize(items * rows_an_item); }
 
   /// Puts lane i of the numbers into item index[i], for the first `count` lanes.
   template <class T>
