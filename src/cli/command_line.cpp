@@ -37,11 +37,12 @@ class Help final : public CLI::FormatterBase {
       text += list_of(app, group, [&](const CLI::Option* option) {
         return option->nonpositional() && option->get_group() == group;
       });
-    if (!app->get_footer().empty()) text += "\n" + wrapped(app->get_footer());
+    if (const auto found = footers.find(app); found != footers.end()) text += "\n" + wrapped(found->second());
     return text;
   }
 
   std::map<const CLI::App*, std::vector<Example>> examples;
+  std::map<const CLI::App*, std::function<std::string()>> footers;
 
  private:
   static constexpr std::size_t column = 26;
@@ -261,7 +262,7 @@ void Command::group(const std::string& title) { group_ = title; }
 
 void Command::examples(std::vector<Example> examples) { help_->examples[app_] = std::move(examples); }
 
-void Command::footer(const std::string& text) { app_->footer(text); }
+void Command::footer(std::function<std::string()> text) { help_->footers[app_] = std::move(text); }
 
 void Command::runs(std::function<void()> action) { app_->callback(std::move(action)); }
 

@@ -81,7 +81,11 @@ class Command {
   /// Shown by --help before the flags.
   void examples(std::vector<Example> examples);
   /// Shown by --help below the flags, wrapped.
-  void footer(const std::string& text);
+  void footer(const std::string& text) {
+    footer([text] { return text; });
+  }
+  /// The same of a text that takes a while to write.
+  void footer(std::function<std::string()> text);
   /// What the command does.
   void runs(std::function<void()> action);
 

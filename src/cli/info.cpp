@@ -320,11 +320,10 @@ void print_fields(const MapReader& map, ShownUnits& units, const MapScales& scal
 
 int run(const InfoArguments& arguments) {
   std::error_code ignored;
-  if (const std::string part = part_of(arguments.path);
-      !std::filesystem::exists(arguments.path, ignored) && std::filesystem::exists(part, ignored))
+  if (!std::filesystem::exists(arguments.path, ignored) && has_part(arguments.path, arguments.locking))
     throw IoError(fmt::format(
         "{}: does not exist yet, only {}; allowed: that file, or leapmap sweep --resume to complete it",
-        arguments.path, part));
+        arguments.path, part_of(arguments.path)));
   const MapReader map(arguments.path, arguments.locking);
   if (arguments.only_spec) {
     write_out(readable_text(parse_map_spec(map.attribute("spec"), arguments.path)));

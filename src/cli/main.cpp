@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// The program leapmap: reads the command line and runs a command.
 #include <fmt/format.h>
+#include <malloc.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <memory>
 #include <new>
+#include <string_view>
 
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
@@ -28,6 +35,25 @@ int complain(int status, std::string_view what) noexcept {
   }
   return status;
 }
+
+/// In the order of --help.
+struct Named {
+  std::string_view name;
+  void (*add)(CommandLine& line, int& status);
+};
+constexpr std::array commands{Named{"hop", add_hop},
+                              Named{"sweep", add_sweep},
+                              Named{"info", add_info},
+                              Named{"boundaries", add_boundaries},
+                              Named{"design", add_design},
+                              Named{"fit", add_fit},
+                              Named{"gait", add_gait},
+                              Named{"check", add_check},
+                              Named{"prove", add_prove},
+                              Named{"export", add_export},
+                              Named{"join", add_join},
+                              Named{"precision", add_precision},
+                              Named{"stability", add_stability}};
 
 /// Reads the command line, runs its command, and turns errors into a line and a status.
 int run(int argc, char** argv) {
@@ -57,19 +83,10 @@ int run(int argc, char** argv) {
                       fmt::join(instruction_sets(), ", ")))
       .at_once()
       .shown_as("NAME");
-  add_hop(line, status);
-  add_sweep(line, status);
-  add_info(line, status);
-  add_boundaries(line, status);
-  add_design(line, status);
-  add_fit(line, status);
-  add_gait(line, status);
-  add_check(line, status);
-  add_prove(line, status);
-  add_export(line, status);
-  add_join(line, status);
-  add_precision(line, status);
-  add_stability(line, status);
+  // One that is named first is all that there is to know.
+  const auto named = std::ranges::find(commands, std::string_view(argc > 1 ? argv[1] : ""), &Named::name);
+  for (const Named& command : commands)
+    if (named == commands.end() || &command == &*named) command.add(line, status);
   try {
     line.run(argc, argv);
     flush_out();
@@ -85,10 +102,31 @@ int run(int argc, char** argv) {
   return status;
 }
 
+/// Keeps what is freed for whoever asks next, and takes the first of it at once. Else every block above 128
+/// kB would go back to the system, which clears it page by page as it is touched again: HDF5 takes half a
+/// megabyte for each file that it opens, and a fault for each page takes longer than all the rest of a small
+/// sweep.
+void keep_memory() {
+  constexpr std::size_t MiB = std::size_t{1} << 20, first = 2 * MiB;
+  ::mallopt(M_MMAP_THRESHOLD, 32 * MiB);  // the largest that malloc comes to by itself
+  ::mallopt(M_TRIM_THRESHOLD, 64 * MiB);
+  ::mallopt(M_TOP_PAD, MiB);
+#ifdef MADV_POPULATE_WRITE
+  void* memory = std::malloc(first);
+  std::size_t room = first;
+  void* pages = memory;
+  const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  // Where that is not known to the system nothing happens.
+  if (std::align(page, first - page, pages, room)) ::madvise(pages, first - page, MADV_POPULATE_WRITE);
+  std::free(memory);
+#endif
+}
+
 }  // namespace
 }  // namespace leapmap::cli
 
 int main(int argc, char** argv) {
+  leapmap::cli::keep_memory();
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow (ulimit -f) is an error of the write, not an end
   try {
     if (!leapmap::open_standard_streams()) return leapmap::cli::io_failure;  // and nowhere to say why

@@ -209,7 +209,7 @@ void add_sweep(CommandLine& line, int& status) {
       .excludes("--shard")
       .excludes("--retry-failed")
       .check(number({1e-3, 1e4}));
-  command.footer(options_help());
+  command.footer([] { return options_help(); });
   command.runs([arguments, &status] { status = run(*arguments); });
 }
 

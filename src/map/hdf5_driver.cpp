@@ -7,6 +7,7 @@
 #include <array>
 #include <exception>
 #include <filesystem>
+#include <future>
 #include <iterator>
 #include <memory>
 
@@ -84,11 +85,7 @@ void* access_of(H5FD_t* base) {
   return target;
 }
 
-herr_t flush(H5FD_t* base, hid_t, hbool_t) {
-  return guarded([&] { driver(base).file->commit(); });
-}
-
-/// Commits nothing: HDF5 closes a file it could not make sense of as well. File::close commits.
+/// Commits nothing: HDF5 closes a file it could not make sense of as well. File commits.
 herr_t close(H5FD_t* base) {
   delete &driver(base);
   return 0;
@@ -143,7 +140,6 @@ hid_t driver_id() {
     made.get_eof = get_eof;
     made.read = read;
     made.write = write;
-    made.flush = flush;
     const H5FD_mem_t map[] = H5FD_FLMAP_DICHOTOMY;  // raw data and metadata aggregate apart, as HDF5's own do
     std::copy(std::begin(map), std::end(map), made.fl_map);
     return made;
@@ -173,7 +169,11 @@ Handle creation_of(const std::string& path) {
   return creation;
 }
 
-enum class Mode { read, change };
+enum class Mode {
+  read,
+  change,
+  verify,  ///< to be read by whoever has just written it
+};
 
 /// The mode is no flag of HDF5's: those are macros that initialise the library, with its handler at exit,
 /// before initialise() can keep it away.
@@ -183,8 +183,9 @@ Handle open_in(const std::shared_ptr<JournaledFile>& file, Mode mode) {
   const Handle access = access_to(file, seen);
   const std::string& path = file->path();
   try {
-    Handle opened(H5Fopen(path.c_str(), mode == Mode::read ? H5F_ACC_RDONLY : H5F_ACC_RDWR, access), H5Fclose,
-                  path + ": cannot be read as HDF5");
+    Handle opened(H5Fopen(path.c_str(), mode == Mode::change ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access),
+                  H5Fclose, path + ": cannot be read as HDF5");
+    if (mode == Mode::verify) return opened;
     *sources = refuse_foreign_parts(opened, path);
     if (!sources->empty() && mode == Mode::change)
       throw ForeignFile(path +
@@ -198,9 +199,10 @@ Handle open_in(const std::shared_ptr<JournaledFile>& file, Mode mode) {
   }
 }
 
-enum class Beginning { other, hdf5, zeros };
+enum class Beginning { other, hdf5, unfinished };
 
-/// How a file begins: as HDF5 files do, or with zeros, as an unfinished file does that was never flushed.
+/// How a file begins: as HDF5 files do, or with zeros in place of some of that, as one does that was never
+/// flushed.
 Beginning beginning_of(const std::string& path, Locking locking) {
   constexpr std::array signature{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
   const JournaledFile file(path, JournaledFile::Access::read, locking);  // its journal may hold the signature
@@ -209,7 +211,17 @@ Beginning beginning_of(const std::string& path, Locking locking) {
       static_cast<std::size_t>(std::min<std::uint64_t>(first.size(), file.end()));  // it may be cut
   file.read(0, std::as_writable_bytes(std::span(first).first(size)));
   if (std::equal(first.data(), first.data() + size, signature.data())) return Beginning::hdf5;
-  return first == decltype(first){} ? Beginning::zeros : Beginning::other;
+  const auto may_become = [](char now, char then) { return now == 0 || now == then; };
+  const bool of_ours =
+      size < first.size() ? first == decltype(first){} : std::ranges::equal(first, signature, may_become);
+  return of_ours ? Beginning::unfinished : Beginning::other;
+}
+
+/// Whether a file was begun and never flushed. An empty one may be anything.
+bool is_unbegun(const std::string& path, Locking locking) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored) && std::filesystem::file_size(path, ignored) > 0 &&
+         beginning_of(path, locking) == Beginning::unfinished;
 }
 
 /// What a file says it is. Throws BrokenFile if that cannot be told, IoError if the system fails.
@@ -227,7 +239,8 @@ std::optional<std::string> filetype_of(const std::string& path, Locking locking)
 
 bool is_hdf5(const std::string& path, Locking locking) {
   std::error_code ignored;
-  return std::filesystem::is_regular_file(path, ignored) && beginning_of(path, locking) == Beginning::hdf5;
+  return std::filesystem::is_regular_file(path, ignored) &&
+         (beginning_of(path, locking) == Beginning::hdf5 || is_unbegun(path, locking));
 }
 
 File File::create(const std::string& path, std::string_view filetype, Locking locking) {
@@ -243,6 +256,8 @@ File File::create(const std::string& path, std::string_view filetype, Locking lo
 }
 
 File File::open(const std::string& path, Locking locking) {
+  if (is_unbegun(path, locking))
+    throw BrokenFile(path + ": holds nothing: what made it was stopped before; allowed: to make it again");
   File file(std::make_shared<JournaledFile>(path, JournaledFile::Access::read, locking));
   file.handle_ = open_in(file.bytes_, Mode::read);
   return file;
@@ -298,12 +313,14 @@ File& File::operator=(File&& other) noexcept {
 
 File::~File() { abandon(); }
 
-void File::flush() { check(H5Fflush(handle_, H5F_SCOPE_LOCAL), bytes_->path() + ": cannot be written"); }
+void File::flush() {
+  check(H5Fflush(handle_, H5F_SCOPE_LOCAL), bytes_->path() + ": cannot be written");
+  bytes_->commit();
+}
 
 void File::close() {
-  flush();
   handle_.close(bytes_->path() + ": cannot be written");
-  bytes_->commit();  // HDF5 writes its last as it closes
+  bytes_->commit();
 }
 
 void refuse_other_file(const std::string& path, std::string_view filetype, Locking locking) {
@@ -331,7 +348,7 @@ void refuse_other_unfinished(const std::string& path, std::string_view filetype,
   bool ours = true;
   try {
     const Beginning beginning = beginning_of(path, locking);
-    ours = beginning == Beginning::zeros ||
+    ours = beginning == Beginning::unfinished ||
            (beginning == Beginning::hdf5 && filetype_of(path, locking) == filetype);
   } catch (const ForeignFile&) {
     throw;
@@ -344,12 +361,17 @@ void refuse_other_unfinished(const std::string& path, std::string_view filetype,
 
 bool File::finish(const std::string& path, bool replace, const std::function<void(hid_t)>& verify) {
   close();
+  // While HDF5 reads its bytes they are added up, of a long file by another thread.
+  constexpr std::uint64_t is_long = std::uint64_t{4} << 20;
+  std::future<std::uint32_t> checksum =
+      std::async(bytes_->size() < is_long ? std::launch::deferred : std::launch::async,
+                 [&bytes = *bytes_] { return bytes.checksum(); });
   {
-    Handle written = open_in(bytes_, Mode::read);
+    Handle written = open_in(bytes_, Mode::verify);
     verify(written);
     written.close(bytes_->path() + ": cannot be read");
   }
-  bytes_->seal();
+  bytes_->seal(checksum.get());
   const bool durable = bytes_->rename(path, replace);
   bytes_.reset();
   return durable;

@@ -31,8 +31,9 @@ struct SealBytes {
 };
 static_assert(sizeof(SealBytes) == 32);
 
-std::uint32_t seal_checksum(int descriptor, const std::string& path, const SealBytes& seal) {
-  return libdeflate_crc32(checksum_of(descriptor, path, 0, seal.size), &seal, offsetof(SealBytes, checksum));
+/// of_file: CRC-32 of the bytes before the seal.
+std::uint32_t seal_checksum(std::uint32_t of_file, const SealBytes& seal) {
+  return libdeflate_crc32(of_file, &seal, offsetof(SealBytes, checksum));
 }
 
 template <class T>
@@ -90,9 +91,9 @@ std::optional<Journal> read_journal(int descriptor, const std::string& path, std
   return journal;
 }
 
-Seal write_seal(int descriptor, const std::string& path, std::uint64_t size) {
+Seal write_seal(int descriptor, const std::string& path, std::uint64_t size, std::uint32_t checksum) {
   SealBytes seal{.size = size};
-  seal.checksum = seal_checksum(descriptor, path, seal);
+  seal.checksum = seal_checksum(checksum, seal);
   write_all(descriptor, path, size, std::as_bytes(std::span(&seal, 1)));
   sync(descriptor, path);
   return {size, seal.checksum};
@@ -107,7 +108,8 @@ std::optional<Seal> read_seal(int descriptor, const std::string& path, std::uint
 }
 
 bool holds(const Seal& seal, int descriptor, const std::string& path) {
-  return seal_checksum(descriptor, path, SealBytes{.size = seal.size}) == seal.checksum;
+  return seal_checksum(checksum_of(descriptor, path, 0, seal.size), SealBytes{.size = seal.size}) ==
+         seal.checksum;
 }
 
 }  // namespace leapmap

@@ -37,8 +37,8 @@ struct Seal {
   std::uint32_t checksum;
 };
 
-/// Seals a file `size` bytes long and brings the seal to disk. Reads the whole file. Throws IoError.
-Seal write_seal(int descriptor, const std::string& path, std::uint64_t size);
+/// Seals a file `size` bytes long whose CRC-32 is `checksum`, and brings the seal to disk. Throws IoError.
+Seal write_seal(int descriptor, const std::string& path, std::uint64_t size, std::uint32_t checksum);
 /// The seal that ends a file `stored` bytes long, if one does; whether it holds is not looked at. Throws
 /// IoError.
 std::optional<Seal> read_seal(int descriptor, const std::string& path, std::uint64_t stored);

@@ -156,6 +156,10 @@ void JournaledFile::write(std::uint64_t offset, std::span<const std::byte> bytes
     appended_ = true;
     write_all(descriptor_, path_, offset, bytes);
     stored_ = std::max(stored_, offset + bytes.size());
+    constexpr std::uint64_t much = std::uint64_t{8} << 20;
+    if (stored_ < sync_begun_ + much) return;
+    const std::uint64_t begun = std::exchange(sync_begun_, stored_);
+    begin_to_sync(descriptor_, begun, stored_ - begun);
   });
 }
 
@@ -163,23 +167,36 @@ void JournaledFile::commit() {
   if (abandoned_) return;
   attempt([&] {
     if (!appended_ && waiting_.empty() && size_ == committed_) return;  // nothing has changed
+    if (committed_ == 0) return commit_first();
     // What was appended has to be there before anything refers to it.
     if (std::exchange(appended_, false)) sync(descriptor_, path_);
-    const bool first = committed_ == 0;
     if (!waiting_.empty()) {
       write_journal(descriptor_, path_, std::max(size_, stored_), size_, waiting_);
       journal_valid_ = true;
     }
     committed_ = size_;
     make_waiting_writes();
-    if (first && !sync_folder(folder_of(path_)))
-      throw IoError(path_ + ": its folder cannot be synced to disk");
   });
 }
 
-void JournaledFile::seal() {
+void JournaledFile::commit_first() {
+  std::vector<std::byte> first(std::min(size_, signature_bytes));
+  read(0, first);
+  cut(descriptor_, path_, size_);
+  sync(descriptor_, path_);
+  write_all(descriptor_, path_, 0, first);
+  appended_ = false;
+  waiting_.clear();
+  committed_ = stored_ = size_;
+  sync(descriptor_, path_);
+  if (!sync_folder(folder_of(path_))) throw IoError(path_ + ": its folder cannot be synced to disk");
+}
+
+std::uint32_t JournaledFile::checksum() const { return checksum_of(descriptor_, path_, 0, committed_); }
+
+void JournaledFile::seal(std::uint32_t checksum) {
   if (abandoned_) return;
-  attempt([&] { seal_ = write_seal(descriptor_, path_, committed_); });
+  attempt([&] { seal_ = write_seal(descriptor_, path_, committed_, checksum); });
 }
 
 std::optional<bool> JournaledFile::seal_holds() const {
@@ -249,7 +266,8 @@ std::uint64_t JournaledFile::end() const {
 bool JournaledFile::blank() const {
   std::array<std::byte, signature_bytes> first{};
   read(0, first);
-  return std::ranges::all_of(first, [](std::byte b) { return b == std::byte{0}; });
+  const auto is_zero = [](std::byte b) { return b == std::byte{0}; };
+  return end() < signature_bytes ? std::ranges::all_of(first, is_zero) : std::ranges::any_of(first, is_zero);
 }
 
 }  // namespace leapmap

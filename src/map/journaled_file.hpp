@@ -5,8 +5,9 @@
 /// What was committed is never overwritten in place: such writes wait in memory. A commit brings what was
 /// appended to disk, then appends the waiting writes as a journal (a redo log with a checksum), then makes
 /// them, then cuts the journal off. Whoever opens the file next finds a whole journal and makes its writes
-/// again, or none, and all is as before. The first bytes, an HDF5 file's signature, always wait, so that a
-/// file never committed is told from one that was.
+/// again, or none, and all is as before. The first eight bytes, an HDF5 file's signature, of which none is
+/// zero, always wait: a file in which one of them is zero was never committed. So the first commit needs no
+/// journal, for nothing else waits, and what it writes last are these eight bytes.
 ///
 /// The first call that fails is remembered: from then on every write and commit fails as well, so that what a
 /// caller overlooked never reaches a commit. A file that is whole ends with a seal, a checksum of all of it.
@@ -59,8 +60,12 @@ class JournaledFile {
   std::uint64_t size() const { return size_; }
   /// All writes so far take effect, on disk when this returns, in a file size() bytes long. Throws IoError.
   void commit();
-  /// Ends a file whose writes are all committed with a checksum of its bytes. Throws IoError.
-  void seal();
+  /// Of all bytes of a file whose writes are all committed. Reads the whole file, and may do so while others
+  /// read it. Throws IoError.
+  std::uint32_t checksum() const;
+  /// Ends such a file with its checksum. Throws IoError.
+  void seal(std::uint32_t checksum);
+  void seal() { seal(checksum()); }
   /// Whether the bytes are those that were sealed; unset: the file has no seal, or was changed since by
   /// another program that knows none. Reads the whole file. Throws IoError.
   std::optional<bool> seal_holds() const;
@@ -87,6 +92,7 @@ class JournaledFile {
  private:
   void open(Locking locking);
   void lock(Locking locking) const;
+  void commit_first();
   void make_waiting_writes();
   /// Whether a write would change anything: HDF5 writes the same head again as it closes a file.
   bool differs(std::uint64_t offset, std::span<const std::byte> bytes) const;
@@ -97,6 +103,7 @@ class JournaledFile {
   std::uint64_t committed_ = 0;        ///< bytes below it are not overwritten in place
   std::uint64_t stored_ = 0;           ///< bytes the file has on disk, a journal not counted
   std::uint64_t size_ = 0;             ///< bytes it is to have after the next commit
+  std::uint64_t sync_begun_ = 0;       ///< bytes that are on their way to disk, if not there
   std::vector<WaitingWrite> waiting_;  ///< in the order they came
   std::optional<Seal> seal_;           ///< what ends the file on disk
   bool appended_ = false;              ///< since the last commit

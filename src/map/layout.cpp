@@ -146,27 +146,28 @@ std::uint64_t map_bytes(const MapLayout& layout, const Tiling& tiling) {
   return per_design * tiling.designs();
 }
 
-void lay_out(hid_t file, const MapLayout& layout, const Tiling& tiling,
-             std::span<const hdf5::Source> sources) {
+std::vector<Handle> lay_out(hid_t file, const MapLayout& layout, const Tiling& tiling,
+                            std::span<const hdf5::Source> sources) {
   std::vector<Handle> scales = write_scales(file, layout, tiling.whole_designs());
   for (const MapAxis& column : layout.columns)
     write_axis(file, column, &scales[0]).close("writing " + column.name);
   if (!layout.labels.empty())
     hdf5::write_series(file, label_name, "1", label_long_name, layout.labels, &scales[0])
         .close("writing labels");
+  std::vector<Handle> fields;
   for (const Field* field : layout.fields) {
-    Handle dataset = create_field(file, *field, layout, tiling, sources);
-    attach(dataset, scales);
-    dataset.close("creating " + std::string(field->name));
+    fields.push_back(create_field(file, *field, layout, tiling, sources));
+    attach(fields.back(), scales);
   }
   close(scales, "writing a dimension");
   write_nexus(file, layout);
+  return fields;
 }
 
 void check_layout(hid_t file, const MapLayout& layout, const Tiling& tiling, const std::string& path) {
   const auto check_one = [&](const std::string& name, const std::string& unit, const std::string& long_name,
                              const std::vector<double>& values) {
-    const Handle dataset(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, "opening " + name);
+    Handle dataset(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, "opening " + name);
     bool same =
         hdf5::read_text(dataset, "units") == unit && hdf5::read_text(dataset, "long_name") == long_name;
     if (!values.empty()) {
@@ -174,6 +175,7 @@ void check_layout(hid_t file, const MapLayout& layout, const Tiling& tiling, con
              hdf5::read_block(dataset, {0}, {values.size()}, "reading " + name) == values;
     }
     if (!same) throw BrokenFile(fmt::format("{}: {} differs from what was written", path, name));
+    return dataset;
   };
   for (const auto* axes : {&layout.axes, &layout.columns})
     for (const MapAxis& axis : *axes) check_one(axis.name, axis.unit, axis.long_name, axis.values);
@@ -185,9 +187,8 @@ void check_layout(hid_t file, const MapLayout& layout, const Tiling& tiling, con
       throw BrokenFile(path + ": label differs from what was written");
   }
   for (const Field* field : layout.fields) {
-    check_one(std::string(field->name), std::string(field->unit), std::string(field->long_name), {});
-    const Handle dataset(H5Dopen2(file, std::string(field->name).c_str(), H5P_DEFAULT), H5Dclose,
-                         fmt::format("opening {}", field->name));
+    const Handle dataset =
+        check_one(std::string(field->name), std::string(field->unit), std::string(field->long_name), {});
     if (hdf5::sources_of(dataset).empty() && hdf5::chunk_of(dataset) != to_hsize(tiling.tile_shape()))
       throw BrokenFile(fmt::format("{}: {} is stored in other chunks", path, field->name));
   }

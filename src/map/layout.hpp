@@ -46,10 +46,10 @@ const void* fill_value(const MapLayout& layout, const Field& field);
 /// How many bytes the map's values take before compression.
 std::uint64_t map_bytes(const MapLayout& layout, const Tiling& tiling);
 
-/// Creates every dataset in an empty file and writes axes and columns. With sources the fields are virtual
-/// datasets made of them. Throws IoError.
-void lay_out(hid_t file, const MapLayout& layout, const Tiling& tiling,
-             std::span<const hdf5::Source> sources = {});
+/// Creates every dataset in an empty file and writes axes and columns. Returns the datasets of the fields, in
+/// the layout's order. With sources these are virtual datasets made of them. Throws IoError.
+std::vector<hdf5::Handle> lay_out(hid_t file, const MapLayout& layout, const Tiling& tiling,
+                                  std::span<const hdf5::Source> sources = {});
 
 /// Throws BrokenFile, naming path and what, unless axes, columns and descriptions in a file are those that
 /// lay_out writes.

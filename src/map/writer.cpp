@@ -9,6 +9,7 @@
 
 #include "leapmap/errors.hpp"
 #include "map/schema.hpp"
+#include "support/posix.hpp"
 
 namespace leapmap {
 namespace {
@@ -84,6 +85,7 @@ MapWriter::MapWriter(const std::string& path, const MapLayout& layout, const Til
 MapWriter MapWriter::begin(const std::string& path, const MapLayout& layout, const Tiling& tiling,
                            std::span<const hdf5::Attribute> attributes, bool overwrite, Locking locking,
                            std::span<const hdf5::Source> sources) {
+  const std::vector<std::int64_t> there = identity_of(path);
   refuse_existing_map(path, tiling, overwrite, locking);
   MapWriter writer(path, layout, tiling);
   hdf5::refuse_other_unfinished(writer.part_, filetype_of(tiling), locking);
@@ -95,13 +97,14 @@ MapWriter MapWriter::begin(const std::string& path, const MapLayout& layout, con
   writer.file_ = hdf5::File::create(writer.part_, filetype_of(tiling), locking);
   writer.begun_ = true;
   writer.replace_ = overwrite;
-  refuse_existing_map(path, tiling, overwrite, locking);  // again, now that nobody else can make it
+  if (identity_of(path) != there)  // again, now that nobody else can make it
+    refuse_existing_map(path, tiling, overwrite, locking);
   hdf5::annotate(writer.file_, attributes);
   writer.virtual_ = !sources.empty();
-  lay_out(writer.file_, layout, tiling, sources);
-  writer.datasets_ = open_fields(writer.file_, layout);
+  writer.datasets_ = lay_out(writer.file_, layout, tiling, sources);
   writer.write_progress();
-  writer.file_.flush();
+  // Of a map of one tile there is nothing to go on with before it is whole.
+  if (tiling.size() > 1) writer.file_.flush();
   return writer;
 }
 

@@ -14,6 +14,18 @@
 
 namespace leapmap {
 
+std::vector<std::int64_t> identity_of(const std::string& path) {
+  struct stat now {};
+  if (::stat(path.c_str(), &now) != 0) return {};
+  return {static_cast<std::int64_t>(now.st_dev),
+          static_cast<std::int64_t>(now.st_ino),
+          now.st_size,
+          now.st_mtim.tv_sec,
+          now.st_mtim.tv_nsec,
+          now.st_ctim.tv_sec,
+          now.st_ctim.tv_nsec};
+}
+
 void fail_with_errno(const std::string& path, std::string_view what) {
   const int reason = errno;
   throw IoError(fmt::format("{}: {}: {}", path, what, std::strerror(reason)));

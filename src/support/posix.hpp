@@ -7,8 +7,10 @@
 
 #include <cerrno>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace leapmap {
 
@@ -21,6 +23,10 @@ auto uninterrupted(const Call& call) {
   for (int trial = 1; trial < most_trials && result == -1 && errno == EINTR; ++trial) result = call();
   return result;
 }
+
+/// Tells a file from any other one and, as good as always, from itself before it was changed; empty: there is
+/// none.
+std::vector<std::int64_t> identity_of(const std::string& path);
 
 /// Throws IoError with path, `what` and errno's reason.
 [[noreturn]] void fail_with_errno(const std::string& path, std::string_view what);
