@@ -94,6 +94,7 @@ std::function<TileWork()> in_order(TileSink sink) {
 std::size_t run_sweep(const Spec& spec, const Request& request, const Tiling& tiling,
                       const EngineOptions& options, const std::function<TileWork()>& make_work) {
   const DesignSpace space(spec);
+  const std::size_t tiles = tiling.size() - std::min(options.first_tile, tiling.size());
   std::size_t delivered = 0;
   OrderedDelivery<Item> delivery(
       options.first_tile,
@@ -101,12 +102,11 @@ std::size_t run_sweep(const Spec& spec, const Request& request, const Tiling& ti
         item.prepared.take();
         delivered += item.designs;
       },
-      most_waiting_bytes(thread_count(options.threads)));
+      most_waiting_bytes(thread_count(options.threads)), tiles);
 
   const std::size_t piece = std::min(piece_of(request), tiling.largest_tile());
   const auto points = points_of(request.scatter);
   const bool scattered = wants_samples(request), needs_bodies = scattered || derives_by_body(request);
-  const std::size_t tiles = tiling.size() - std::min(options.first_tile, tiling.size());
   parallel_for_each(tiles, thread_count(options.threads), options.stop_requested, [&] {
     // A thread's own: the method's workspace, the encoder's, and the piece of a tile in hand.
     return

@@ -19,14 +19,18 @@ namespace leapmap {
 
 /// Holds at most `most_bytes` of items that wait for their turn or for the taker; a thread that brings more
 /// waits, so that memory stays bounded when one item, or whoever takes them, is slow. Items must be begun in
-/// order for that wait to end.
+/// order for that wait to end. A single item needs no thread of its own: whoever finishes takes it.
 template <class Item>
 class OrderedDelivery {
  public:
   using Take = std::function<void(Item&)>;
 
-  OrderedDelivery(std::size_t first, Take take, std::size_t most_bytes)
-      : take_(std::move(take)), most_bytes_(most_bytes), next_(first), taker_([this] { run(); }) {}
+  /// items: so many will come at most.
+  OrderedDelivery(std::size_t first, Take take, std::size_t most_bytes,
+                  std::size_t items = std::numeric_limits<std::size_t>::max())
+      : take_(std::move(take)), most_bytes_(most_bytes), next_(first) {
+    if (items > 1) taker_ = std::thread([this] { leave_place(), take_all(); });
+  }
   /// Abandons what still waits.
   ~OrderedDelivery() { end(State::abandoned); }
 
@@ -45,6 +49,10 @@ class OrderedDelivery {
   /// Waits until everything brought has been taken, and throws on what `take` threw. Nothing may be brought
   /// after.
   void finish() {
+    if (!taker_.joinable() && state_ == State::open) {
+      state_ = State::finished;
+      take_all();
+    }
     end(State::finished);
     if (failure_) std::rethrow_exception(failure_);
   }
@@ -70,8 +78,7 @@ class OrderedDelivery {
     std::size_t bytes;
   };
 
-  void run() {
-    leave_place();
+  void take_all() {
     std::unique_lock lock(mutex_);
     for (;;) {
       const auto due = [&] { return !waiting_.empty() && waiting_.begin()->first == next_; };

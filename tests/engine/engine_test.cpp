@@ -225,6 +225,33 @@ TEST(OrderedDelivery, AnErrorWhileTakingAbandonsTheDeliveryAtOnce) {
   EXPECT_EQ(taken, 1) << "nothing is taken after an error";
 }
 
+TEST(OrderedDelivery, ASingleItemIsTakenByWhoeverFinishes) {
+  std::vector<std::thread::id> takers;
+  OrderedDelivery<int> delivery(
+      3, [&](int&) { takers.push_back(std::this_thread::get_id()); }, 2, 1);
+  EXPECT_TRUE(delivery.bring(3, 0, 1));
+  EXPECT_TRUE(takers.empty());
+  delivery.finish();
+  EXPECT_EQ(takers, std::vector{std::this_thread::get_id()});
+
+  OrderedDelivery<int> fails(
+      0, [](int&) { throw std::runtime_error("disk full"); }, 2, 1);
+  EXPECT_TRUE(fails.bring(0, 0, 1));
+  EXPECT_THROW(fails.finish(), std::runtime_error);
+
+  OrderedDelivery<int> none(
+      0, [&](int&) { takers.clear(); }, 2, 1);
+  none.close(0);
+  EXPECT_FALSE(none.bring(0, 0, 1));
+  none.finish();
+  OrderedDelivery<int> abandoned(
+      0, [&](int&) { takers.clear(); }, 2, 1);
+  EXPECT_TRUE(abandoned.bring(0, 0, 1));
+  abandoned.abandon();
+  abandoned.finish();
+  EXPECT_EQ(takers.size(), 1u) << "what was closed or abandoned is not taken";
+}
+
 TEST(OrderedDelivery, AbandoningLetsWaitingThreadsGo) {
   OrderedDelivery<int> delivery(
       0, [](int&) {}, 0);
