@@ -361,11 +361,11 @@ void refuse_other_unfinished(const std::string& path, std::string_view filetype,
 
 bool File::finish(const std::string& path, bool replace, const std::function<void(hid_t)>& verify) {
   close();
-  // While HDF5 reads its bytes they are added up, of a long file by another thread.
+  // While HDF5 reads its bytes they are added up, of a long file by another thread if there can be one.
   constexpr std::uint64_t is_long = std::uint64_t{4} << 20;
-  std::future<std::uint32_t> checksum =
-      std::async(bytes_->size() < is_long ? std::launch::deferred : std::launch::async,
-                 [&bytes = *bytes_] { return bytes.checksum(); });
+  std::future<std::uint32_t> checksum = std::async(
+      bytes_->size() < is_long ? std::launch::deferred : std::launch::async | std::launch::deferred,
+      [&bytes = *bytes_] { return bytes.checksum(); });
   {
     Handle written = open_in(bytes_, Mode::verify);
     verify(written);
