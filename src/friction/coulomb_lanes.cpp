@@ -21,7 +21,7 @@ void CoulombLanes<T>::solve(Start start, std::span<const Design> designs, std::s
   const CoulombObserver nobody;
   constexpr std::size_t width = Lanes<T>::count;
   find_pivot_zeros(designs, scene);
-  // What a call left that ended by an exception is nobody's.
+  // A call that ended by an exception leaves phases behind.
   free_.clear(), flying_.clear(), rebounding_.clear(), rolling_.clear(), sliding_.clear();
   for (std::size_t place = most_on_their_way; place-- > 0;)
     free_.push_back(static_cast<std::uint32_t>(place));

@@ -73,8 +73,8 @@ class ReturnMap {
   ReturnMap(const Scene& scene, JumpSolvers solvers)
       : scene_(each_jump_alone(scene)), solvers_(std::move(solvers)) {}
 
-  /// Takes designs from their landings, or releases, to their next landings, reduced, and on where goes_on
-  /// says so; outcomes tell which jumped last: one beyond the runway did not.
+  /// Takes designs from their landings, or releases, to their next landings, reduced, and further where
+  /// goes_on says so. Outcomes are those of each design's last jump; one beyond the runway is no jump.
   void follow(Start start, std::span<const Design> designs, std::span<Landed> states,
               std::vector<Outcome>& outcomes, const GoesOn& goes_on);
 

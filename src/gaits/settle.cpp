@@ -40,7 +40,8 @@ bool GaitSolver::orbit_of(const Design& design, Orbit& orbit) {
 }
 
 /// Follows each design until its jumps end or its orbit is plain: a transient that shrinks by the same factor
-/// from round to round need not be followed to its end. After scene_.settle jumps it is looked for.
+/// from round to round need not be followed to its end. The orbits of those that still jump after
+/// scene_.settle jumps are looked for.
 void GaitSolver::follow(std::span<const Design> designs,
                         const std::function<void(std::size_t, const Orbit&)>& found) {
   assert(scene_.settle > 0 && scene_.most_period > 0);
@@ -60,8 +61,8 @@ void GaitSolver::follow(std::span<const Design> designs,
       found(i, orbit);
 }
 
-/// Whether it is to be followed on from where it has landed. Once it is as good as on an orbit it is not, and
-/// has settled.
+/// Whether a design that has just landed is to be followed further. Where it has come so near to an orbit
+/// that it is not, it has settled.
 bool GaitSolver::goes_on(const Design& design, const Landed& landed, Course& course, Orbit& orbit) {
   constexpr long most_seen = 16;
   auto& [jumps, next_look, seen, settled] = course;

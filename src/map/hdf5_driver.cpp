@@ -203,9 +203,8 @@ enum class Beginning { other, hdf5, unfinished };
 
 /// How a file begins: as HDF5 files do, or with zeros in place of some of that, as one does that was never
 /// flushed.
-Beginning beginning_of(const std::string& path, Locking locking) {
+Beginning beginning_of(const JournaledFile& file) {
   constexpr std::array signature{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
-  const JournaledFile file(path, JournaledFile::Access::read, locking);  // its journal may hold the signature
   std::array<char, signature.size()> first{};
   const auto size =
       static_cast<std::size_t>(std::min<std::uint64_t>(first.size(), file.end()));  // it may be cut
@@ -217,11 +216,8 @@ Beginning beginning_of(const std::string& path, Locking locking) {
   return of_ours ? Beginning::unfinished : Beginning::other;
 }
 
-/// Whether a file was begun and never flushed. An empty one may be anything.
-bool is_unbegun(const std::string& path, Locking locking) {
-  std::error_code ignored;
-  return std::filesystem::is_regular_file(path, ignored) && std::filesystem::file_size(path, ignored) > 0 &&
-         beginning_of(path, locking) == Beginning::unfinished;
+Beginning beginning_of(const std::string& path, Locking locking) {
+  return beginning_of(JournaledFile(path, JournaledFile::Access::read, locking));  // its journal may hold it
 }
 
 /// What a file says it is. Throws BrokenFile if that cannot be told, IoError if the system fails.
@@ -239,8 +235,7 @@ std::optional<std::string> filetype_of(const std::string& path, Locking locking)
 
 bool is_hdf5(const std::string& path, Locking locking) {
   std::error_code ignored;
-  return std::filesystem::is_regular_file(path, ignored) &&
-         (beginning_of(path, locking) == Beginning::hdf5 || is_unbegun(path, locking));
+  return std::filesystem::is_regular_file(path, ignored) && beginning_of(path, locking) != Beginning::other;
 }
 
 File File::create(const std::string& path, std::string_view filetype, Locking locking) {
@@ -256,9 +251,11 @@ File File::create(const std::string& path, std::string_view filetype, Locking lo
 }
 
 File File::open(const std::string& path, Locking locking) {
-  if (is_unbegun(path, locking))
-    throw BrokenFile(path + ": holds nothing: what made it was stopped before; allowed: to make it again");
   File file(std::make_shared<JournaledFile>(path, JournaledFile::Access::read, locking));
+  if (beginning_of(*file.bytes_) == Beginning::unfinished)
+    throw BrokenFile(path +
+                     ": holds nothing, as what wrote it was stopped before its first commit; allowed: start "
+                     "it again");
   file.handle_ = open_in(file.bytes_, Mode::read);
   return file;
 }

@@ -65,7 +65,6 @@ class JournaledFile {
   std::uint32_t checksum() const;
   /// Ends such a file with its checksum. Throws IoError.
   void seal(std::uint32_t checksum);
-  void seal() { seal(checksum()); }
   /// Whether the bytes are those that were sealed; unset: the file has no seal, or was changed since by
   /// another program that knows none. Reads the whole file. Throws IoError.
   std::optional<bool> seal_holds() const;

@@ -97,13 +97,13 @@ MapWriter MapWriter::begin(const std::string& path, const MapLayout& layout, con
   writer.file_ = hdf5::File::create(writer.part_, filetype_of(tiling), locking);
   writer.begun_ = true;
   writer.replace_ = overwrite;
-  if (identity_of(path) != there)  // again, now that nobody else can make it
+  if (identity_of(path) != there)  // it came, or changed, before the unfinished file kept others away
     refuse_existing_map(path, tiling, overwrite, locking);
   hdf5::annotate(writer.file_, attributes);
   writer.virtual_ = !sources.empty();
   writer.datasets_ = lay_out(writer.file_, layout, tiling, sources);
   writer.write_progress();
-  // Of a map of one tile there is nothing to go on with before it is whole.
+  // A map of one tile holds nothing to resume before it is whole.
   if (tiling.size() > 1) writer.file_.flush();
   return writer;
 }

@@ -58,7 +58,7 @@ void cut(int descriptor, const std::string& path, std::uint64_t size) {
 
 void begin_to_sync(int descriptor, std::uint64_t offset, std::uint64_t bytes) {
 #ifdef SYNC_FILE_RANGE_WRITE
-  // Where it fails the sync does all of the work, and tells.
+  // If it fails, the sync does all of the work and reports the failure.
   static_cast<void>(::sync_file_range(descriptor, static_cast<off_t>(offset), static_cast<off_t>(bytes),
                                       SYNC_FILE_RANGE_WRITE) != 0);
 #endif

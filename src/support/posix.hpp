@@ -24,8 +24,8 @@ auto uninterrupted(const Call& call) {
   return result;
 }
 
-/// Tells a file from any other one and, as good as always, from itself before it was changed; empty: there is
-/// none.
+/// Numbers that are others for any other file, and for the same file once it was changed. Empty: there is no
+/// such file.
 std::vector<std::int64_t> identity_of(const std::string& path);
 
 /// Throws IoError with path, `what` and errno's reason.

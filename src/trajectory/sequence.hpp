@@ -31,10 +31,10 @@ template <class S>
 using JumpSolver = std::function<void(Start, std::span<const Design>, std::span<ContactState<S>> states,
                                       std::span<Outcome>)>;
 
-/// Takes designs jump after jump: where designs[i] has jumped, goes_on(i) is asked, with its outcome and its
-/// state in place, and may change the state; it goes on from there if that is true. Owns its workspace: one a
-/// thread.
+/// Whether designs[i], which has just landed from a jump, goes on. Its outcome and its state are in place;
+/// the state may be changed.
 using GoesOn = std::function<bool(std::size_t i)>;
+/// As a JumpSolver, jump after jump: each design as long as it jumps and goes on.
 using LongJumpSolver =
     std::function<void(Start, std::span<const Design>, std::span<ContactState<double>> states,
                        std::span<Outcome>, const GoesOn&)>;
