@@ -113,6 +113,7 @@ set(LEAPMAP_SOURCES
   src/map/journal.cpp
   src/map/journaled_file.cpp
   src/map/layout.cpp
+  src/map/plain_deflate.cpp
   src/map/reader.cpp
   src/map/shard_name.cpp
   src/map/table_file.cpp

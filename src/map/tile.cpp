@@ -16,7 +16,9 @@ std::size_t product(const std::vector<std::size_t>& extents) {
   return std::accumulate(extents.begin(), extents.end(), std::size_t{1}, std::multiplies<>());
 }
 
-/// Doubles the shortest side that can still grow until the tile is as large as it should be.
+/// Doubles the shortest side that can still grow until the tile is as large as it should be. Then sides are
+/// made so short that the same number of them is just as long as the map: what reaches over its edge would be
+/// encoded, too.
 std::vector<std::size_t> balanced_tile(const std::vector<std::size_t>& shape, std::size_t most) {
   constexpr std::size_t smallest = 64, wanted_tiles = 64;
   const std::size_t target =
@@ -29,6 +31,8 @@ std::vector<std::size_t> balanced_tile(const std::vector<std::size_t>& shape, st
     if (shortest == shape.size()) break;
     tile[shortest] = std::min(2 * tile[shortest], shape[shortest]);
   }
+  const auto parts = [](std::size_t whole, std::size_t part) { return (whole + part - 1) / part; };
+  for (std::size_t i = 0; i < tile.size(); ++i) tile[i] = parts(shape[i], parts(shape[i], tile[i]));
   return tile;
 }
 

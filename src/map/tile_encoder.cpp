@@ -33,24 +33,6 @@ void append_checksum(std::vector<std::byte>& bytes) {
   bytes.insert(bytes.end(), first, first + sizeof checksum);
 }
 
-/// Whether bytes look like noise, which deflate takes long to pass on as it is: samples of them hold more
-/// than 7 bits a byte, so that none is frequent, and do not repeat what is before them.
-bool is_noise(std::span<const std::byte> bytes) {
-  constexpr std::size_t samples = 32, each = 64, all = samples * each;
-  if (bytes.size() < 2 * all) return false;
-  std::array<unsigned, 256> met{};
-  unsigned repeated = 0;
-  for (std::size_t s = 0; s < samples; ++s) {
-    const auto some = bytes.subspan(s * (bytes.size() / samples), each + 1);
-    for (std::size_t i = 1; i <= each; ++i)
-      ++met[std::to_integer<std::size_t>(some[i])], repeated += some[i] == some[i - 1];
-  }
-  // Of n uniform bytes, pairs of equal ones are n (n - 1) / 512: with 7 bits a byte, twice as many.
-  std::size_t pairs = 0;
-  for (const std::size_t n : met) pairs += n * (n - 1) / 2;
-  return pairs < all * (all - 1) / 256 && repeated < all / 64;
-}
-
 }  // namespace
 
 std::uint32_t fletcher32(std::span<const std::byte> bytes) {
@@ -180,35 +162,47 @@ EncodedChunk TileEncoder::deflate(std::span<const std::byte> values, std::size_t
 }
 
 /// Fills packed_ with zlib's format of the values, and returns its length, 0 if that is no shorter. Planes of
-/// noise at the beginning, as the last digits of numbers are, become stored blocks.
+/// noise and runs at the beginning, as the last digits of numbers are, are written without a search.
 std::size_t TileEncoder::pack(std::span<const std::byte> values, std::size_t plane) {
-  constexpr std::size_t most_stored = 65535, trailer = 4;
+  constexpr std::size_t head = 2, trailer = 4;
   packed_.resize(values.size());
-  std::size_t noise = 0;
-  while (noise < values.size() && is_noise(values.subspan(noise, plane))) noise += plane;
-  if (noise == 0)
+  if (values.size() <= head + trailer) return 0;
+  PlainDeflate plain(std::span<std::byte>(packed_).subspan(head, values.size() - head - trailer));
+  std::size_t taken = 0;
+  while (taken < values.size() && is_plain(values.subspan(taken, plane))) {
+    for (const BytePiece& piece : pieces_)
+      piece.is_run ? plain.repeat(piece.bytes[0], piece.bytes.size()) : plain.store(piece.bytes);
+    taken += plane;
+  }
+  if (taken == 0)
     return libdeflate_zlib_compress(compressor_.get(), values.data(), values.size(), packed_.data(),
                                     packed_.size());
-  const std::size_t blocks = (noise + most_stored - 1) / most_stored;
-  if (noise + 5 * blocks + 2 + trailer >= values.size()) return 0;
-  std::byte* to = packed_.data();
-  const auto put = [&](std::size_t byte) { *to++ = static_cast<std::byte>(byte & 255u); };
-  put(0x78), put(0x01);  // deflate, a window of 32 kB, and a check of these two
-  for (std::size_t at = 0; at < noise;) {
-    const std::size_t length = std::min(most_stored, noise - at);
-    put(0), put(length), put(length >> 8), put(~length), put(~length >> 8);  // stored, and not the last block
-    std::memcpy(to, values.data() + at, length);
-    to += length, at += length;
+  taken < values.size() ? plain.align() : plain.finish();
+  if (!plain.fits()) return 0;
+  std::size_t written = head + plain.size();
+  if (taken < values.size()) {
+    const std::size_t rest =
+        libdeflate_deflate_compress(compressor_.get(), values.data() + taken, values.size() - taken,
+                                    packed_.data() + written, packed_.size() - written - trailer);
+    if (rest == 0) return 0;
+    written += rest;
   }
-  const auto written = static_cast<std::size_t>(to - packed_.data());
-  const std::size_t packed =
-      libdeflate_deflate_compress(compressor_.get(), values.data() + noise, values.size() - noise, to,
-                                  packed_.size() - written - trailer);
-  if (packed == 0) return 0;
-  to += packed;
+  const auto put = [&](std::size_t at, std::size_t byte) {
+    packed_[at] = static_cast<std::byte>(byte & 255u);
+  };
+  put(0, 0x78), put(1, 0x01);  // deflate, a window of 32 kB, and a check of these two
   const std::uint32_t sum = libdeflate_adler32(1, values.data(), values.size());
-  put(sum >> 24), put(sum >> 16), put(sum >> 8), put(sum);
-  return written + packed + trailer;
+  for (std::size_t i = 0; i < trailer; ++i) put(written + i, sum >> (24 - 8 * i));
+  return written + trailer;
+}
+
+/// Splits a plane into pieces_, and tells whether what lies between its runs is noise, or next to nothing.
+bool TileEncoder::is_plain(std::span<const std::byte> plane) {
+  split_runs(plane, pieces_);
+  between_.clear();
+  for (const BytePiece& piece : pieces_)
+    if (!piece.is_run) between_.insert(between_.end(), piece.bytes.begin(), piece.bytes.end());
+  return 64 * between_.size() <= plane.size() || is_noise(between_);
 }
 
 }  // namespace leapmap

@@ -13,6 +13,7 @@
 
 #include "leapmap/outcome.hpp"
 #include "map/layout.hpp"
+#include "map/plain_deflate.hpp"
 
 struct libdeflate_compressor;
 
@@ -60,6 +61,7 @@ class TileEncoder {
   std::span<const std::byte> spread(const Tile& tile, std::size_t field);
   EncodedChunk deflate(std::span<const std::byte> values, std::size_t size);
   std::size_t pack(std::span<const std::byte> values, std::size_t plane);
+  bool is_plain(std::span<const std::byte> plane);
 
   const MapLayout* layout_;
   const Tiling* tiling_;
@@ -67,6 +69,8 @@ class TileEncoder {
   std::vector<std::vector<std::byte>> columns_;  ///< a field's values each, in the tile's order
   StatusCounts statuses_{};                      ///< of what was taken
   std::vector<std::byte> chunk_, shuffled_, packed_;
+  std::vector<BytePiece> pieces_;   ///< of the plane in hand
+  std::vector<std::byte> between_;  ///< its runs
 };
 
 }  // namespace leapmap

@@ -43,17 +43,17 @@ void ExactSolver<T>::solve_block(Start start, std::span<const Design> designs,
                                  std::span<Outcome> outcomes) {
   const bool lands = wanted_.descent || wanted_.landing || !states.empty();
   take_off_.keeps_flights = lands;
-  take_off_.landed = {};
-  if (start == Start::landing) take_off_.landed = states;
-  prepare(designs, take_off_.landed, scene, block_, outcomes);
-  take_off_.bounce(block_, designs, scene, outcomes, block_.searching);
+  std::span<const ContactState<ScalarOf<T>>> landed;
+  if (start == Start::landing) landed = states;
+  prepare(designs, landed, scene, block_, outcomes);
+  take_off_.bounce(block_, scene, outcomes, block_.searching);
   unscanned_ = block_.searching;
   while (!block_.searching.empty()) {
     throw_if_stopped();
     scan_.run(block_, unscanned_);
     pick_intervals(outcomes);
     classify_.run(block_, take_off_.falls, going_on_);
-    take_off_.run(block_, designs, scene, outcomes, going_on_);
+    take_off_.run(block_, scene, outcomes, going_on_);
     turn_round(block_, turning_, scene);
     std::swap(block_.searching, going_on_);
   }

@@ -13,8 +13,7 @@
 namespace leapmap {
 
 template <class T>
-void TakeOff<T>::run(Block<T>& block, std::span<const Design> designs, const Scene& scene,
-                     std::span<Outcome> outcomes, DesignList& going_on) {
+void TakeOff<T>::run(Block<T>& block, const Scene& scene, std::span<Outcome> outcomes, DesignList& going_on) {
   using std::abs, std::sqrt;
   using S = ScalarOf<T>;
   using W = WideOf<T>;
@@ -31,17 +30,16 @@ void TakeOff<T>::run(Block<T>& block, std::span<const Design> designs, const Sce
     const Trig<W> phi = trig(angle);
     // Beside a turn E may round to nothing.
     const W spin = sqrt(larger(vis_viva(roll, angle, phi), W(1e-290)) / contact_inertia(roll.hoop, phi));
-    fly(block, lanes.index, count, roll, angle, phi, spin, designs, scene, outcomes,
-        [&](std::uint32_t design) {
-          block.searches[design].advance();
-          going_on.push_back(design);
-        });
+    fly(block, lanes.index, count, roll, angle, phi, spin, scene, outcomes, [&](std::uint32_t design) {
+      block.searches[design].advance();
+      going_on.push_back(design);
+    });
   }
 }
 
 template <class T>
-void TakeOff<T>::bounce(Block<T>& block, std::span<const Design> designs, const Scene& scene,
-                        std::span<Outcome> outcomes, DesignList& going_on) {
+void TakeOff<T>::bounce(Block<T>& block, const Scene& scene, std::span<Outcome> outcomes,
+                        DesignList& going_on) {
   using std::sqrt;
   using W = WideOf<T>;
   if (told && !block.bouncing.empty()) told->bounces = true;
@@ -50,7 +48,7 @@ void TakeOff<T>::bounce(Block<T>& block, std::span<const Design> designs, const 
     const DesignLanes<W> index = lanes_from<W>(block.bouncing, first);
     const Roll<W> roll = block.template load_roll<W>(index.data());
     const W spin = sqrt(roll.released / contact_inertia(roll.hoop, roll.release_trig));
-    fly(block, index, count, roll, roll.release, roll.release_trig, spin, designs, scene, outcomes,
+    fly(block, index, count, roll, roll.release, roll.release_trig, spin, scene, outcomes,
         [&](std::uint32_t design) { going_on.push_back(design); });
   }
 }
@@ -59,8 +57,7 @@ template <class T>
 template <class Low>
 void TakeOff<T>::fly(Block<T>& block, const DesignLanes<WideOf<T>>& index, std::size_t count,
                      const Roll<WideOf<T>>& roll, const WideOf<T>& angle, const Trig<WideOf<T>>& phi,
-                     const WideOf<T>& spin, std::span<const Design> designs, const Scene& scene,
-                     std::span<Outcome> outcomes, const Low& low) {
+                     const WideOf<T>& spin, const Scene& scene, std::span<Outcome> outcomes, const Low& low) {
   using S = ScalarOf<T>;
   using W = WideOf<T>;
   const Ascent<W> ascent = ascend(toss_of(roll.hoop, angle, phi, spin), angle == angle);
@@ -98,9 +95,9 @@ void TakeOff<T>::fly(Block<T>& block, const DesignLanes<WideOf<T>>& index, std::
       }
       const Flight<double> flight{static_cast<double>(heights[i]), static_cast<double>(apexes[i]),
                                   Outcome::none, Outcome::none};
-      const double distance =
-          landed.empty() ? lift_off.angle - designs[design].release_angle
-                         : lift_off.angle - static_cast<double>(landed[design].angle - landed[design].travel);
+      const S origin = found.release - found.travelled;  // as seen on the first leg
+      const auto distance =
+          static_cast<double>(found.way * (found.leg == 2 ? angles[i] + origin : angles[i] - origin));
       if (consider(outcome, scene, lift_off, flight, distance)) continue;
     }
     low(design);

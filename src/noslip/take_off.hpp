@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "hoop/contact_state.hpp"
-#include "leapmap/design.hpp"
 #include "leapmap/outcome.hpp"
 #include "leapmap/scene.hpp"
 #include "noslip/block.hpp"
@@ -27,24 +26,19 @@ struct TakeOff {
   std::vector<SureFall<ScalarOf<T>>> falls;  ///< with one lift-off each, at most one a design
   FoundLiftOffs* told = nullptr;             ///< told every lift-off, if there
   bool keeps_flights = true;                 ///< for land to go on with
-  /// Where the designs landed and went on from; empty: they were released.
-  std::span<const ContactState<ScalarOf<T>>> landed;
 
   /// Adds designs whose search goes on, because that was not the jump, to `going_on`.
-  void run(Block<T>& block, std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes,
-           DesignList& going_on);
+  void run(Block<T>& block, const Scene& scene, std::span<Outcome> outcomes, DesignList& going_on);
 
   /// The same of designs that leave the plane where they landed. What stays low rolls on.
-  void bounce(Block<T>& block, std::span<const Design> designs, const Scene& scene,
-              std::span<Outcome> outcomes, DesignList& going_on);
+  void bounce(Block<T>& block, const Scene& scene, std::span<Outcome> outcomes, DesignList& going_on);
 
  private:
   /// The flights of some designs, one in each of `count` lanes; low(design) is told of each that goes on.
   template <class Low>
   void fly(Block<T>& block, const DesignLanes<WideOf<T>>& index, std::size_t count,
            const Roll<WideOf<T>>& roll, const WideOf<T>& angle, const Trig<WideOf<T>>& phi,
-           const WideOf<T>& spin, std::span<const Design> designs, const Scene& scene,
-           std::span<Outcome> outcomes, const Low& low);
+           const WideOf<T>& spin, const Scene& scene, std::span<Outcome> outcomes, const Low& low);
 };
 
 /// Flight time and dip of the jumps, and if asked for their measures. states: of all designs where they set

@@ -47,17 +47,17 @@ const Range& range_of(double Design::*member) {
 }
 
 /// A box that is still to be proved.
-struct Part {
+struct UnprovedBox {
   DesignBox box;
   std::size_t cuts = 0;
 };
 
 /// The halves of a part along one axis after the other.
-std::array<Part, 2> halves(const Part& part, const std::vector<double Design::*>& varying) {
+std::array<UnprovedBox, 2> halves(const UnprovedBox& part, const std::vector<double Design::*>& varying) {
   const auto member = varying[part.cuts % varying.size()];
-  std::array<Part, 2> two{part, part};
+  std::array<UnprovedBox, 2> two{part, part};
   two[0].box.to.*member = two[1].box.from.*member = middle_of(part.box.from.*member, part.box.to.*member);
-  for (Part& half : two) ++half.cuts;
+  for (UnprovedBox& half : two) ++half.cuts;
   return two;
 }
 
@@ -115,11 +115,11 @@ CellProof prove_cell(const DesignBox& box, const Scene& scene, bool times) {
     const Proof proof = prove(design, scene);
     return proof.proved && differs(outcome_kind(proof), design);
   };
-  std::vector<Part> todo{{box}};
+  std::vector<UnprovedBox> todo{{box}};
   bool is_open = false, is_timed = true;
   while (!todo.empty()) {
     throw_if_stopped();
-    const Part part = todo.back();
+    const UnprovedBox part = todo.back();
     todo.pop_back();
     ++cell.boxes;
     const Proof proof = prove(part.box, scene, times);
@@ -135,7 +135,7 @@ CellProof prove_cell(const DesignBox& box, const Scene& scene, bool times) {
       is_open = true;
       continue;
     }
-    for (const Part& half : halves(part, varying)) todo.push_back(half);
+    for (const UnprovedBox& half : halves(part, varying)) todo.push_back(half);
   }
   cell.finding = is_open ? CellFinding::open : CellFinding::proved;
   if (is_open) cell.height = {};

@@ -34,7 +34,7 @@ Tiling tiling_of(const Spec& spec) {
   if (spec.scatter.spreads.empty()) {
     // Some hoops take a hundred times as long as others: small enough that shards come out even.
     const std::size_t designs = designs_of(shape);
-    return Tiling(shape, std::clamp<std::size_t>(designs / 512, 128, 2048));
+    return Tiling(shape, std::clamp<std::size_t>(designs / 384, 128, 2048));
   }
   constexpr std::size_t most_hoops = 1 << 20;  // of a tile: some tenths of a second, with friction seconds
   const std::size_t most =

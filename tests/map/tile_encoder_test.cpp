@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <random>
 
@@ -107,13 +108,26 @@ TEST(TileEncoder, StoresWhatDoesNotGetSmallerAsItIs) {
   EXPECT_EQ(encoded.chunks[0].bytes.size(), 15u * 8u + 4u) << "and a checksum";
 }
 
+/// What HDF5 reads of one field's tile, written to a file.
+void expect_read_back(const MapLayout& layout, const Tiling& tiling, const EncodedTile& encoded,
+                      const std::vector<Outcome>& outcomes) {
+  const testing::TemporaryFolder folder;
+  MapWriter writer = MapWriter::begin(folder / "map.h5", layout, tiling, testing::small_attributes, false);
+  writer.write(encoded);
+  EXPECT_TRUE(writer.finish({}));
+  const std::vector<double> stored =
+      MapReader(folder / "map.h5").read("jump_height", Tile{{0, 0}, tiling.shape(), tiling.designs()});
+  for (std::size_t i = 0; i < outcomes.size(); ++i)
+    ASSERT_TRUE(stored[i] == outcomes[i].jump_height ||
+                (std::isnan(stored[i]) && std::isnan(outcomes[i].jump_height)));
+}
+
 TEST(TileEncoder, PassesNoiseOnAsStoredBlocksOfTheSameStream) {
   MapLayout layout = testing::small_layout();
   layout.fields = {find_field("jump_height"), find_field("status")};
   layout.axes = {{"slope", "rad", "", std::vector<double>(300)},
                  {"mass_ratio", "1", "", std::vector<double>(300)}};
   layout.compression = 1;
-  const testing::TemporaryFolder folder;
   const std::vector<std::size_t> shape{300, 300};  // planes of 90,000 bytes: more than one stored block
   const Tiling tiling(shape, shape);
   std::mt19937_64 random(6);
@@ -130,12 +144,34 @@ TEST(TileEncoder, PassesNoiseOnAsStoredBlocksOfTheSameStream) {
   EXPECT_GT(bytes.size(), 3 * outcomes.size()) << "the last three bytes of every number are noise";
   EXPECT_LT(bytes.size(), 6 * outcomes.size()) << "the first ones are not";
 
-  MapWriter writer = MapWriter::begin(folder / "map.h5", layout, tiling, testing::small_attributes, false);
-  writer.write(encoded);
-  EXPECT_TRUE(writer.finish({}));
-  const std::vector<double> stored =
-      MapReader(folder / "map.h5").read("jump_height", Tile{{0, 0}, shape, tiling.designs()});
-  for (std::size_t i = 0; i < outcomes.size(); ++i) ASSERT_EQ(stored[i], outcomes[i].jump_height);
+  expect_read_back(layout, tiling, encoded, outcomes);
+}
+
+TEST(TileEncoder, WritesRunsAndTheNoiseBetweenThemWithoutASearch) {
+  MapLayout layout = testing::small_layout();
+  layout.fields = {find_field("jump_height")};
+  layout.axes = {{"slope", "rad", "", std::vector<double>(80)},
+                 {"mass_ratio", "1", "", std::vector<double>(64)}};
+  layout.compression = 1;
+  const Tiling tiling({80, 64}, {80, 64});
+  std::mt19937_64 random(7);
+  const auto with_jumps = [&](std::size_t from, std::size_t to) {
+    std::vector<Outcome> outcomes(tiling.designs());
+    for (std::size_t i = 0; i < outcomes.size(); ++i)
+      if (i % 64 >= from && i % 64 < to)
+        outcomes[i].jump_height = std::ldexp(1.0, -1) + std::ldexp(static_cast<double>(random() >> 11), -54);
+    return outcomes;
+  };
+  // Most designs do not jump, those in the middle of each row do: six bytes of noise, and two that repeat.
+  for (const std::size_t width : {0u, 8u, 20u, 64u}) {
+    SCOPED_TRACE(width);
+    const std::vector<Outcome> outcomes = with_jumps(20, 20 + std::min<std::size_t>(width, 44));
+    const EncodedTile encoded = testing::encoded(layout, tiling, 0, outcomes);
+    EXPECT_EQ(encoded.chunks[0].skipped_filters, 0u);
+    const std::size_t jumps = 80 * std::min<std::size_t>(width, 44);
+    EXPECT_LE(encoded.chunks[0].bytes.size(), 7 * jumps + 8 * 80 * 12 + 200) << "ten bytes a row and plane";
+    expect_read_back(layout, tiling, encoded, outcomes);
+  }
 }
 
 }  // namespace

@@ -50,6 +50,17 @@ TEST(Unravel, TheLastDimensionIsFastest) {
   EXPECT_EQ(position, (std::vector<std::size_t>{1, 0, 1}));
 }
 
+TEST(Tiling, ReachesOverTheMapsEdgeByLessThanADesignForEachTile) {
+  for (const std::vector<std::size_t>& shape : std::vector<std::vector<std::size_t>>{
+           {200, 200, 100}, {200, 200, 5}, {9, 9}, {101, 99}, {1000003}, {5, 5, 5, 5, 5, 5, 5, 5}}) {
+    const Tiling tiling(shape);
+    for (std::size_t k = 0; k < shape.size(); ++k) {
+      const std::size_t side = tiling.tile_shape()[k], tiles = (shape[k] + side - 1) / side;
+      EXPECT_LT(side * tiles - shape[k], tiles) << shape[k];
+    }
+  }
+}
+
 TEST(Tiling, KnowsHowManyDesignsComeBeforeATile) {
   const Tiling tiling({7, 9, 5}, {4, 4, 3});
   std::size_t before = 0;
