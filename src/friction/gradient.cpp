@@ -19,8 +19,6 @@
 namespace leapmap {
 namespace {
 
-using D = DesignDual;
-
 /// A guard, in weights, that passes zero more slowly than this, per sqrt(R/g) or per radian: its zero is
 /// known to so few digits that no derivative is worth telling.
 constexpr double slowest = 1e-4;
@@ -28,16 +26,22 @@ constexpr double slowest = 1e-4;
 constexpr double agreement = 1e-6;
 
 /// As contact_of has it. Where mu_kinetic follows mu_static both are one parameter, and so they are where
-/// mu_static, being less than mu_kinetic, counts as much.
-Contact<D> dual_contact(const Design& design, const Scene& scene) {
-  const bool one = kinetic_follows(design) || design.mu_static < design.mu_kinetic;
-  const D fixed = kinetic_follows(design) ? D::parameter(design.mu_static, by_mu_static)
-                                          : D::parameter(design.mu_kinetic, by_mu_kinetic);
-  return {one ? fixed : D::parameter(design.mu_static, by_mu_static), fixed,
-          D::parameter(design.restitution, by_restitution), D(scene.rest_speed)};
+/// mu_static, being less than mu_kinetic, counts as much. Constants for a StateDual.
+template <class D>
+Contact<D> contact_for(const Design& design, const Scene& scene) {
+  if constexpr (std::is_same_v<D, StateDual>) {
+    return contact_of<D>(design, scene);
+  } else {
+    const bool one = kinetic_follows(design) || design.mu_static < design.mu_kinetic;
+    const D fixed = kinetic_follows(design) ? D::parameter(design.mu_static, by_mu_static)
+                                            : D::parameter(design.mu_kinetic, by_mu_kinetic);
+    return {one ? fixed : D::parameter(design.mu_static, by_mu_static), fixed,
+            D::parameter(design.restitution, by_restitution), D(scene.rest_speed)};
+  }
 }
 
 /// The chain of one design's phases.
+template <class D>
 class Chain {
  public:
   Chain(const Hoop<D>& hoop, const Contact<D>& contact, const ContactState<D>& from, double second,
@@ -53,6 +57,8 @@ class Chain {
     released_ = contact_energy(hoop_, at_);
   }
 
+  /// Spares the times of rolling: what becomes of the state does not depend on them.
+  void leave_out_times() { times_ = false; }
   /// Asks for what the way to the jump asks of hoop and motor.
   void follow_way() { meter_.emplace(hoop_, at_.spin); }
 
@@ -93,6 +99,7 @@ class Chain {
   /// Takes the plain solver's values, if the chain came to the same.
   bool agrees(const ContactState<double>& there) {
     bool near = true;
+    if (!times_) at_.time = D(there.time);
     const auto take = [&](D& value, double number) {
       near = near && std::abs(value.value - number) <= agreement * (1.0 + std::abs(number));
       value.value = number;
@@ -116,7 +123,7 @@ class Chain {
     const D left = vis_viva_past_release(roll, D(end - at_.angle)) / contact_inertia(hoop_, trig(end));
     if (!(left > D(0.0))) return false;
     if (meter_) meter_->roll(roll, at_.spin, begun.turns, end);
-    at_.time += time_.time(hoop_, at_.angle, at_.spin, begun.turns, end);
+    if (times_) at_.time += time_.time(hoop_, at_.angle, at_.spin, begun.turns, end);
     at_.travel += end - at_.angle;
     driven_ += hoop_.motor() * (end - at_.angle);
     at_.angle = end;
@@ -127,7 +134,8 @@ class Chain {
   bool slide_on(const SlideTold<double>& taken, int direction, const ContactState<double>& to,
                 bool then_flies) {
     const ContactState<D> from = at_;
-    SlidingPanels<D>::Slide slide{hoop_, contact_.mu_kinetic * static_cast<double>(direction), {}, {}, {}};
+    typename SlidingPanels<D>::Slide slide{
+        hoop_, contact_.mu_kinetic * static_cast<double>(direction), {}, {}, {}};
     slide.free_force = free_normal_force(hoop_, trig(at_.angle), at_.spin * at_.spin);
     if (at_.spin == D(0.0)) set_out_from_rest(slide.friction);
     for (const auto& one : taken)
@@ -164,17 +172,18 @@ class Chain {
     return true;
   }
 
-  using Part = SlidingPanels<D>::Taken;
+  using Part = typename SlidingPanels<D>::Taken;
 
   /// The plain solver's panel in duals. Where the hoop has just set out, u = w^2 is small, and time's
   /// derivatives go as u^(-3/2): fixed nodes would not resolve them however well they resolve the values. So
   /// the stretch moves with the zero of u just before its start, as SlidingPanels::stretch_of places it, and
   /// all is smooth along it again. Its end keeps its q. A zero that is farther behind needs no such care,
   /// and would move so much that digits are lost.
-  Part dual_part(const SlidingPanels<D>::Slide& slide, const SlidingPanels<double>::Taken& taken) const {
+  Part dual_part(const typename SlidingPanels<D>::Slide& slide,
+                 const SlidingPanels<double>::Taken& taken) const {
     if (!taken.stretch) return {{}, D(taken.duration)};
     const auto& plain = *taken.stretch;
-    SlidingPanels<D>::Stretch stretch{D(plain.shift), D(plain.begin), D(plain.span)};
+    typename SlidingPanels<D>::Stretch stretch{D(plain.shift), D(plain.begin), D(plain.span)};
     const SlidingMotion<D> start =
         sliding_motion(hoop_, trig(at_.angle), at_.spin * at_.spin, slide.friction);
     const D rise = at_.spin < D(0.0) ? -start.angular : start.angular;
@@ -191,10 +200,10 @@ class Chain {
 
   /// Slides over a panel, in halves where that resolves the values but not their derivatives, and as long as
   /// that helps. excess: of the panel that it is half of.
-  bool over_panel(SlidingPanels<D>::Slide& slide, const Part& part, double excess) {
+  bool over_panel(typename SlidingPanels<D>::Slide& slide, const Part& part, double excess) {
     constexpr double resolved = 1e3;  // times the finest tolerance
     constexpr int most_panels = 2'000;
-    SlidingPanels<D>::Panel panel;
+    typename SlidingPanels<D>::Panel panel;
     panels_.solve(slide, at_, part, panel);
     if (!std::isfinite(panel.excess) || ++panels_taken_ > most_panels) return false;
     if (panel.excess <= resolved || !(panel.excess < 0.5 * excess)) {
@@ -215,7 +224,8 @@ class Chain {
   }
 
   /// The largest force and spins within a panel, which are looked for in plain numbers.
-  void meet(const SlidingPanels<D>::Slide& slide, const Part& part, const SlidingPanels<D>::Panel& panel) {
+  void meet(const typename SlidingPanels<D>::Slide& slide, const Part& part,
+            const typename SlidingPanels<D>::Panel& panel) {
     const SlidingPanels<double>::Slide plain_slide{
         mapped<double>(hoop_, [](const D& number) { return number.value; }),
         slide.friction.value,
@@ -290,6 +300,7 @@ class Chain {
   double second_;
   Contact<D> contact_;
   Hoop<D> hoop_;
+  bool times_ = true;
   bool turns_on_;  // the motor, in flight
   ContactState<D> at_;
   D released_{0.0}, driven_{0.0}, slipped_{0.0};
@@ -319,8 +330,10 @@ void CoulombGradients::derive_solved(std::span<const Design> designs, const Scen
     ContactState<double> at = released<double>(designs[i]);
     if (!same_flags(outcomes[i], recorded_way(finer_, Start::release, designs[i], at, scene, recorded)))
       continue;
-    Chain chain(reduce(dual_parameters<D>(designs[i]), scene), dual_contact(designs[i], scene),
-                dual_release(designs[i]), time_unit(scene), panels_, plain_panels_, time_);
+    using D = DesignDual;
+    Chain<D> chain(reduce(dual_parameters<D>(designs[i]), scene), contact_for<D>(designs[i], scene),
+                   dual_release(designs[i]), time_unit(scene), by_design_.panels, plain_panels_,
+                   by_design_.time);
     if (follows_ways) chain.follow_way();
     chain.run(recorded, outcomes[i], [&](double Outcome::*quantity, D value, double unit) {
       if (kinetic_follows(designs[i])) value.by[by_mu_kinetic] = std::numeric_limits<double>::quiet_NaN();
@@ -330,18 +343,17 @@ void CoulombGradients::derive_solved(std::span<const Design> designs, const Scen
   }
 }
 
-Outcome CoulombGradients::jump(Start start, const Design& design, const Scene& scene, Along along,
-                               ContactState<D>& at, const PutDual& put) {
+template <class D>
+Outcome CoulombGradients::jump(Start start, const Design& design, const Scene& scene, ContactState<D>& at,
+                               const PutDual<D>& put) {
   RecordedWay recorded;
   ContactState<double> landed = plain(at);
   Outcome outcome = recorded_way(finer_, start, design, landed, scene, recorded);
   if (outcome.status != Status::jumped) return outcome;
-  Contact<D> contact = dual_contact(design, scene);
-  if (along == Along::state)
-    contact = {D(contact.mu_static.value), D(contact.mu_kinetic.value), D(contact.restitution.value),
-               contact.rest_speed};
-  Chain chain(reduce(parameters_along(design, along), scene), contact, at, time_unit(scene), panels_,
-              plain_panels_, time_);
+  const InDuals<D>& work = in_duals<D>();
+  Chain<D> chain(reduce(parameters_for<D>(design), scene), contact_for<D>(design, scene), at,
+                 time_unit(scene), work.panels, plain_panels_, work.time);
+  if (!put) chain.leave_out_times();
   const bool known =
       chain.run(recorded, outcome, [&](double Outcome::*quantity, const D& value, double unit) {
         if (put) put(quantity, value, unit);
@@ -368,11 +380,23 @@ GradientSolver friction::gradients(const Scene& scene, double tolerance, const W
   return in_sequence(first, jumps(scene, tolerance, wanted), dual_jumps(scene, tolerance), scene);
 }
 
-DualJumpSolver friction::dual_jumps(const Scene& scene, double tolerance) {
+namespace {
+
+template <class D>
+DualJumpSolver<D> jumps_in(const Scene& scene, double tolerance) {
   return [solver = std::make_shared<CoulombGradients>(tolerance), scene](
-             Start start, const Design& design, Along along, ContactState<D>& at, const PutDual& put) {
-    return solver->jump(start, design, scene, along, at, put);
+             Start start, const Design& design, ContactState<D>& at, const PutDual<D>& put) {
+    return solver->jump(start, design, scene, at, put);
   };
+}
+
+}  // namespace
+
+DualJumpSolver<DesignDual> friction::dual_jumps(const Scene& scene, double tolerance) {
+  return jumps_in<DesignDual>(scene, tolerance);
+}
+DualJumpSolver<StateDual> friction::state_jumps(const Scene& scene, double tolerance) {
+  return jumps_in<StateDual>(scene, tolerance);
 }
 
 }  // namespace leapmap

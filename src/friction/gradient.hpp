@@ -20,7 +20,7 @@ class CoulombGradients {
  public:
   /// Outcomes are CoulombSolver's at that tolerance. Derivatives are of a finer solution.
   explicit CoulombGradients(double tolerance)
-      : solver_(tolerance), finer_(std::min(tolerance, finest)), panels_(finest), plain_panels_(finest) {}
+      : solver_(tolerance), finer_(std::min(tolerance, finest)), plain_panels_(finest) {}
 
   void solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes,
              Gradients& gradients);
@@ -29,16 +29,30 @@ class CoulombGradients {
                      Gradients& gradients);
 
   /// One jump with derivatives, as DualJumpSolver has it.
-  Outcome jump(Start start, const Design& design, const Scene& scene, Along along,
-               ContactState<DesignDual>& at, const PutDual& put);
+  template <class D>
+  Outcome jump(Start start, const Design& design, const Scene& scene, ContactState<D>& at,
+               const PutDual<D>& put);
 
  private:
   static constexpr double finest = 1e-12;
 
+  template <class D>
+  struct InDuals {
+    SlidingPanels<D> panels{finest};
+    DualTime<D> time{};
+  };
+  template <class D>
+  const InDuals<D>& in_duals() const {
+    if constexpr (std::is_same_v<D, StateDual>)
+      return by_state_;
+    else
+      return by_design_;
+  }
+
   CoulombSolver<double> solver_, finer_;
-  SlidingPanels<DesignDual> panels_;
   SlidingPanels<double> plain_panels_;
-  DualTime<DesignDual> time_;
+  InDuals<DesignDual> by_design_;
+  InDuals<StateDual> by_state_;
 };
 
 }  // namespace leapmap

@@ -358,6 +358,7 @@ template void SlidingPanels<Batch>::solve_by_angle(const Slide&, const ContactSt
 template auto SlidingPanels<Batch>::state_at(const Slide&, const ContactState<Batch>&, const Stretch&,
                                              const Panel&, const Batch&) const -> Inside;
 template class SlidingPanels<DesignDual>;
+template class SlidingPanels<StateDual>;
 #endif
 #ifdef LEAPMAP_SCALARS
 template class SlidingPanels<long double>;

@@ -7,11 +7,11 @@
 
 namespace leapmap {
 
-ErrorGrowth::ErrorGrowth(const Scene& scene, DualJumpSolver duals)
+ErrorGrowth::ErrorGrowth(const Scene& scene, DualJumpSolver<StateDual> duals)
     : scene_(each_jump_alone(scene)), duals_(std::move(duals)) {}
 
 ErrorGrowth::ErrorGrowth(const Scene& scene, double tolerance)
-    : ErrorGrowth(scene, need(model_of(scene), &Model::dual_jumps, "derivatives of later jumps")(
+    : ErrorGrowth(scene, need(model_of(scene), &Model::state_jumps, "derivatives of later jumps")(
                              each_jump_alone(scene), tolerance)) {}
 
 std::vector<double> ErrorGrowth::along(const Design& design, std::size_t most) {
@@ -24,8 +24,8 @@ std::vector<double> ErrorGrowth::along(const Design& design, Start start, Contac
   // Each of them takes an error made at one landing, or at the release, to the last landing.
   std::vector<StateMatrix> since{StateMatrix::Identity()};
   while (growth.size() < most) {
-    ContactState<DesignDual> dual = by_state(at);
-    if (duals_(start, design, Along::state, dual, {}).status != Status::jumped) break;
+    ContactState<StateDual> dual = by_state(at);
+    if (duals_(start, design, dual, {}).status != Status::jumped) break;
     const StateMatrix slope = slope_of(dual);
     if (!slope.allFinite()) {
       growth.resize(most, std::numeric_limits<double>::quiet_NaN());

@@ -19,7 +19,7 @@ inline constexpr double most_growth = 1e20;
 /// A thread's own workspace.
 class ErrorGrowth {
  public:
-  ErrorGrowth(const Scene& scene, DualJumpSolver duals);
+  ErrorGrowth(const Scene& scene, DualJumpSolver<StateDual> duals);
   /// By the scene's model. tolerance: relative, of times.
   ErrorGrowth(const Scene& scene, double tolerance);
 
@@ -36,7 +36,7 @@ class ErrorGrowth {
 
  private:
   Scene scene_;
-  DualJumpSolver duals_;
+  DualJumpSolver<StateDual> duals_;
 };
 
 }  // namespace leapmap

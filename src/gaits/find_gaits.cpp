@@ -46,12 +46,12 @@ class Section {
       : design_(design),
         scene_(scene),
         hoop_(reduce<double>(design, scene)),
-        duals_(need(model_of(scene), &Model::dual_jumps, "derivatives of later jumps")(scene, tolerance)),
+        duals_(need(model_of(scene), &Model::state_jumps, "derivatives of later jumps")(scene, tolerance)),
         way_(way),
         returns_(returns) {}
 
   Sampled at(double angle) const {
-    using D = DesignDual;
+    using D = StateDual;
     Sampled sampled{angle};
     const std::optional<double> spin = lift_off_spin(angle);
     if (!spin) return sampled;
@@ -59,7 +59,7 @@ class Section {
     if (!(flight.height >= scene_.hop_height)) return sampled;
     sampled.height = flight.height;
 
-    const Hoop<D> hoop = reduce(parameters_along(design_, Along::state), scene_);
+    const Hoop<D> hoop = reduce(parameters_for<D>(design_), scene_);
     ContactState<D> dual{.angle = D::parameter(angle, 0), .spin = dual_spin(hoop, angle)};
     const FlightDual<D> flown =
         with_derivatives(hoop, trig(dual.angle), dual.spin, D(0.0), flight.apex_time, flight.flight_time);
@@ -75,7 +75,7 @@ class Section {
       const auto note = [&](double Outcome::*quantity, const D& value, double) {
         if (quantity == &Outcome::jump_angle) lift_off = value;
       };
-      const Outcome outcome = duals_(Start::landing, design_, Along::state, dual, note);
+      const Outcome outcome = duals_(Start::landing, design_, dual, note);
       const bool jumps = outcome.status == Status::jumped && !is_beyond(scene_, plain(dual));
       const Course course = !jumps                           ? Course::no_jump
                             : lift_off.value == landed       ? Course::again_at_once
@@ -112,15 +112,15 @@ class Section {
     if (!(G.rate * way_ < 0.0)) return std::nullopt;
     return way_ * std::sqrt(E / contact_inertia(hoop_, phi));
   }
-  DesignDual dual_spin(const Hoop<DesignDual>& hoop, double angle) const {
-    const Trig<DesignDual> phi = trig(DesignDual::parameter(angle, 0));
-    return DesignDual(way_) * sqrt(vis_viva_at_lift_off(hoop, phi) / contact_inertia(hoop, phi));
+  StateDual dual_spin(const Hoop<StateDual>& hoop, double angle) const {
+    const Trig<StateDual> phi = trig(StateDual::parameter(angle, 0));
+    return StateDual(way_) * sqrt(vis_viva_at_lift_off(hoop, phi) / contact_inertia(hoop, phi));
   }
 
   const Design& design_;
   const Scene& scene_;
   Hoop<double> hoop_;
-  DualJumpSolver duals_;
+  DualJumpSolver<StateDual> duals_;
   double way_;
   int returns_;
 };

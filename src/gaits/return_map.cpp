@@ -39,17 +39,17 @@ Scene each_jump_alone(Scene scene) {
   return scene;
 }
 
-ContactState<DesignDual> by_state(const Landed& at) {
-  ContactState<DesignDual> dual{.angle = DesignDual::parameter(at.angle, 0),
-                                .spin = DesignDual::parameter(at.spin, 1),
-                                .slip = DesignDual(at.slip),
-                                .normal = DesignDual(at.normal)};
-  if (at.slip != 0.0) dual.slip = DesignDual::parameter(at.slip, 2);
-  if (at.normal != 0.0) dual.normal = DesignDual::parameter(at.normal, 3);
+ContactState<StateDual> by_state(const Landed& at) {
+  ContactState<StateDual> dual{.angle = StateDual::parameter(at.angle, 0),
+                               .spin = StateDual::parameter(at.spin, 1),
+                               .slip = StateDual(at.slip),
+                               .normal = StateDual(at.normal)};
+  if (at.slip != 0.0) dual.slip = StateDual::parameter(at.slip, 2);
+  if (at.normal != 0.0) dual.normal = StateDual::parameter(at.normal, 3);
   return dual;
 }
 
-StateMatrix slope_of(const ContactState<DesignDual>& at) {
+StateMatrix slope_of(const ContactState<StateDual>& at) {
   const std::array numbers{&at.angle, &at.spin, &at.slip, &at.normal};
   StateMatrix slope;
   for (int row = 0; row < 4; ++row)
@@ -68,10 +68,10 @@ JumpSolvers jump_solvers(const Scene& scene, double tolerance) {
   const Scene alone = each_jump_alone(scene);
   const Model& model = model_of(alone);
   const auto jumps = need(model, &Model::jumps, "semi-analytic solver of later jumps");
-  const auto dual_jumps = need(model, &Model::dual_jumps, "derivatives of later jumps");
+  const auto state_jumps = need(model, &Model::state_jumps, "derivatives of later jumps");
   return {model.long_jumps ? model.long_jumps(alone, tolerance, untimed)
                            : in_rounds(jumps(alone, tolerance, untimed)),
-          jumps(alone, tolerance, {}), dual_jumps(alone, tolerance)};
+          jumps(alone, tolerance, {}), state_jumps(alone, tolerance)};
 }
 
 void ReturnMap::follow(Start start, std::span<const Design> designs, std::span<Landed> states,
@@ -88,9 +88,9 @@ void ReturnMap::follow(Start start, std::span<const Design> designs, std::span<L
 }
 
 bool ReturnMap::go_round(const Design& design, int period, Landed& at, StateMatrix& slope) {
-  ContactState<DesignDual> dual = by_state(at);
+  ContactState<StateDual> dual = by_state(at);
   for (int k = 0; k < period; ++k) {
-    if (solvers_.duals(Start::landing, design, Along::state, dual, {}).status != Status::jumped) return false;
+    if (solvers_.duals(Start::landing, design, dual, {}).status != Status::jumped) return false;
     if (is_beyond(scene_, plain(dual))) return false;
     set_values(dual, reduced(plain(dual)));
   }

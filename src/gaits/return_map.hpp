@@ -27,9 +27,9 @@ using StateMatrix = Eigen::Matrix4d;
 Scene each_jump_alone(Scene scene);
 
 /// A state that knows its derivatives by itself; by the normal velocity only where there is one, as by slip.
-ContactState<DesignDual> by_state(const Landed& at);
+ContactState<StateDual> by_state(const Landed& at);
 /// Those of a state that a map has taken from there.
-StateMatrix slope_of(const ContactState<DesignDual>& at);
+StateMatrix slope_of(const ContactState<StateDual>& at);
 /// By size; of a pair of complex ones the size.
 double largest_eigenvalue(const StateMatrix& slope);
 
@@ -61,7 +61,7 @@ inline constexpr Wanted untimed{
 struct JumpSolvers {
   LongJumpSolver jumps;            ///< untimed
   JumpSolver<double> timed_jumps;  ///< with all that there is
-  DualJumpSolver duals;
+  DualJumpSolver<StateDual> duals;
 };
 /// Those of the scene's model. tolerance: relative, of times.
 JumpSolvers jump_solvers(const Scene& scene, double tolerance);

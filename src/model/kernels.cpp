@@ -27,16 +27,17 @@ constexpr Model with_pendulum(Friction friction, std::string_view name, std::str
 // Made by the compiler: nothing of a set may run before it is chosen.
 constinit const std::array list{
     Model{Friction::sticking, "sticking", "never slips (the paper's model)", false, noslip::exact,
-          noslip::jumps, noslip::gradients, noslip::dual_jumps, noslip::integration, noslip::integrated_jumps,
-          noslip::refined, noslip::tell_exactly,
+          noslip::jumps, noslip::gradients, noslip::dual_jumps, noslip::state_jumps, noslip::integration,
+          noslip::integrated_jumps, noslip::refined, noslip::tell_exactly,
           [](const Design& design, const Scene& scene, const IntegrationOptions& options, double interval) {
             return noslip::tell_by_integration(design, scene, options, interval);
           },
           noslip::solving, noslip::effort, noslip::ways},
     Model{Friction::coulomb, "coulomb", "slips, by Coulomb friction", true, friction::exact, friction::jumps,
-          friction::gradients, friction::dual_jumps, friction::integration, friction::integrated_jumps,
-          friction::refined, friction::tell_exactly, friction::tell_by_integration, friction::solving,
-          friction::effort, friction::ways, friction::long_jumps},
+          friction::gradients, friction::dual_jumps, friction::state_jumps, friction::integration,
+          friction::integrated_jumps, friction::refined, friction::tell_exactly,
+          friction::tell_by_integration, friction::solving, friction::effort, friction::ways,
+          friction::long_jumps},
     with_pendulum(Friction::sticking, "sticking", "never slips", false),
     with_pendulum(Friction::coulomb, "coulomb", "slips, by Coulomb friction", true)};
 

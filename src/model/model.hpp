@@ -35,8 +35,9 @@ struct Model {
   JumpSolver<double> (*jumps)(const Scene&, double tolerance, const Wanted&);
   /// The same with derivatives.
   GradientSolver (*gradients)(const Scene&, double tolerance, const Wanted&, const GradientWanted&);
-  /// One jump after the other, by parameters or by the state that it begins at.
-  DualJumpSolver (*dual_jumps)(const Scene&, double tolerance);
+  /// One jump after the other, by parameters; and by the state that it begins at.
+  DualJumpSolver<DesignDual> (*dual_jumps)(const Scene&, double tolerance);
+  DualJumpSolver<StateDual> (*state_jumps)(const Scene&, double tolerance);
   /// By integration in time.
   Solver (*integration)(const Scene&, const IntegrationOptions&);
   /// The same from any state to the landing of the next jump.

@@ -13,22 +13,22 @@
 namespace leapmap::noslip {
 namespace {
 
-using D = DesignDual;
-
+template <class D>
 struct Workspace {
   ExactSolver<double> solver;
   DualTime<D> time{};
 };
 
-Outcome jump_on(Workspace& work, const Scene& scene, Start start, const Design& design, Along along,
-                ContactState<D>& at, const PutDual& put) {
+template <class D>
+Outcome jump_on(Workspace<D>& work, const Scene& scene, Start start, const Design& design,
+                ContactState<D>& at, const PutDual<D>& put) {
   ContactState<double> landed = plain(at);
   FoundLiftOffs told;
   Outcome outcome;
   work.solver.solve(start, {&design, 1}, {&landed, 1}, scene, {&outcome, 1}, &told);
   if (outcome.status != Status::jumped) return outcome;
 
-  const Hoop<D> hoop = reduce(parameters_along(design, along), scene);
+  const Hoop<D> hoop = reduce(parameters_for<D>(design), scene);
   const double second = time_unit(scene);
   if (!told.bounces || told.lift_offs.size() > 1) {
     // The same N at every angle, whichever way it rolls.
@@ -55,12 +55,21 @@ Outcome jump_on(Workspace& work, const Scene& scene, Start start, const Design& 
   return outcome;
 }
 
+template <class D>
+DualJumpSolver<D> jumps_in(const Scene& scene, double tolerance) {
+  const auto work = std::make_shared<Workspace<D>>(Workspace<D>{ExactSolver<double>(tolerance)});
+  return [work, scene](Start start, const Design& design, ContactState<D>& at, const PutDual<D>& put) {
+    return jump_on(*work, scene, start, design, at, put);
+  };
+}
+
 }  // namespace
 
-DualJumpSolver dual_jumps(const Scene& scene, double tolerance) {
-  const auto work = std::make_shared<Workspace>(Workspace{ExactSolver<double>(tolerance)});
-  return [work, scene](Start start, const Design& design, Along along, ContactState<D>& at,
-                       const PutDual& put) { return jump_on(*work, scene, start, design, along, at, put); };
+DualJumpSolver<DesignDual> dual_jumps(const Scene& scene, double tolerance) {
+  return jumps_in<DesignDual>(scene, tolerance);
+}
+DualJumpSolver<StateDual> state_jumps(const Scene& scene, double tolerance) {
+  return jumps_in<StateDual>(scene, tolerance);
 }
 
 }  // namespace leapmap::noslip

@@ -10,7 +10,7 @@
 
 namespace leapmap {
 
-/// D: DesignDual, or RollingDual.
+/// D: DesignDual, RollingDual or StateDual.
 template <class D>
 class DualTime {
  public:

@@ -23,7 +23,8 @@ GradientSolver gradients(const Scene& scene, double tolerance, const Wanted& wan
                          const GradientWanted& asked);
 
 /// One jump after the other with derivatives.
-DualJumpSolver dual_jumps(const Scene& scene, double tolerance);
+DualJumpSolver<DesignDual> dual_jumps(const Scene& scene, double tolerance);
+DualJumpSolver<StateDual> state_jumps(const Scene& scene, double tolerance);
 
 /// A design's share of the work (model/model.hpp).
 std::function<double(const Design&)> effort(const Scene& scene, bool derivatives);

@@ -20,7 +20,6 @@
 #include "map/writer.hpp"
 #include "shards/join_faults.hpp"
 #include "shards/shard.hpp"
-#include "spec/designs.hpp"
 #include "spec/map_spec.hpp"
 #include "support/output_file.hpp"
 #include "support/printable.hpp"
@@ -156,9 +155,9 @@ class Joining {
       spec_ = spec;
       first_ = path;
       layout_ = layout_of(spec_);
-      tiling_.emplace(tiling_of(spec_));
+      // Shards of another leapmap may be cut into other tiles than this one's would be.
+      tiling_.emplace(shard.blocks(std::string(layout_.fields.front()->name)));
       for (const char* name : bits_depend_on) same_.emplace_back(name, shard.attribute(name));
-      holder.resize(tiling_->size());
     } else if (const auto difference = first_difference(spec_, spec)) {
       throw InputError(fmt::format("{}: has another spec than {}: {}; allowed: shards of one spec", path,
                                    first_, *difference));
@@ -166,6 +165,7 @@ class Joining {
     refuse_other_program(shard, path);
     add_up(shard);
     const std::vector<std::size_t> tiles = tiles_held(shard.file(), tiling_->size());
+    holder.resize(tiling_->size());
     for (const std::size_t t : tiles) {
       if (holder[t] != 0)
         throw InputError(

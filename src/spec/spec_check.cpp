@@ -244,7 +244,7 @@ void check_capabilities(const Spec& spec) {
     refuse_without(exact ? model.jumps != nullptr : model.integrated_jumps != nullptr, "jumps",
                    "jumps that begin at a landing", "1");
   if (spec.scene.settle > 0)
-    refuse_without(model.jumps && model.dual_jumps, "settle", "derivatives of jumps", "0");
+    refuse_without(model.jumps && model.state_jumps, "settle", "derivatives of jumps", "0");
 }
 
 }  // namespace

@@ -36,7 +36,9 @@ inline std::size_t place_of(double Design::*parameter) {
 
 /// A number with its derivatives by every parameter of one design.
 using DesignDual = Dual<double, differentiable.size()>;
-/// The same without friction's, of one design and of as many as the machine has lanes.
+/// A number with its derivatives by a state at a landing: angle, spin, slip and normal velocity.
+using StateDual = Dual<double, 4>;
+/// As DesignDual without friction's, of one design and of as many as the machine has lanes.
 using RollingDual = Dual<double, without_slip>;
 using LanesDual = Dual<Batch, without_slip>;
 

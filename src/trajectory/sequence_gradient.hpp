@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "trajectory/gradient.hpp"
@@ -13,35 +14,41 @@
 namespace leapmap {
 
 /// Takes a quantity of a jump with its derivatives, in `unit` of the solver's own.
-using PutDual = std::function<void(double Outcome::*quantity, const DesignDual& value, double unit)>;
-
-/// By what a jump is differentiated: the parameters of the design, in the order of `differentiable`, or
-/// whatever the duals of the state that it begins at mean, the design being constant.
-enum class Along { parameters, state };
+template <class D>
+using PutDual = std::function<void(double Outcome::*quantity, const D& value, double unit)>;
 
 /// Takes a design from a state with derivatives to just after the landing of its next jump, whose quantities
-/// it puts if `put` is set, and returns the outcome. Derivatives that are infinite or not known are NaN from
-/// there on. Owns its workspace: one a thread.
+/// it puts if `put` is set, and returns the outcome. DesignDual: by the design's parameters, in the order of
+/// `differentiable`. StateDual: by whatever the duals of the state that it begins at mean, the design being
+/// constant. Derivatives that are infinite or not known are NaN from there on; those of times may be wrong
+/// unless something is put. Owns its workspace: one a thread.
+template <class D>
 using DualJumpSolver =
-    std::function<Outcome(Start, const Design&, Along, ContactState<DesignDual>& at, const PutDual& put)>;
+    std::function<Outcome(Start, const Design&, ContactState<D>& at, const PutDual<D>& put)>;
 
-inline ContactState<double> plain(const ContactState<DesignDual>& at) {
+template <class D>
+ContactState<double> plain(const ContactState<D>& at) {
   return {at.time.value, at.travel.value, at.angle.value,           at.spin.value,
           at.slip.value, at.normal.value, at.turned_in_flight.value};
 }
 /// Takes over values that somebody knows better.
-inline void set_values(ContactState<DesignDual>& at, const ContactState<double>& known) {
+template <class D>
+void set_values(ContactState<D>& at, const ContactState<double>& known) {
   at.time.value = known.time, at.travel.value = known.travel, at.angle.value = known.angle;
   at.spin.value = known.spin, at.slip.value = known.slip, at.normal.value = known.normal;
   at.turned_in_flight.value = known.turned_in_flight;
 }
 
-/// The first parameters of a design as constants, or as duals of themselves.
-inline std::array<DesignDual, without_slip> parameters_along(const Design& design, Along along) {
-  std::array<DesignDual, without_slip> parameters = dual_parameters<DesignDual>(design);
-  if (along == Along::state)
-    for (DesignDual& parameter : parameters) parameter = DesignDual(parameter.value);
-  return parameters;
+/// The first parameters of a design: constants for a StateDual.
+template <class D>
+std::array<D, without_slip> parameters_for(const Design& design) {
+  if constexpr (std::is_same_v<D, StateDual>) {
+    std::array<D, without_slip> parameters;
+    for (std::size_t k = 0; k < parameters.size(); ++k) parameters[k] = D(design.*differentiable[k]);
+    return parameters;
+  } else {
+    return dual_parameters<D>(design);
+  }
 }
 
 inline ContactState<DesignDual> dual_release(const Design& design) {
@@ -51,8 +58,8 @@ inline ContactState<DesignDual> dual_release(const Design& design) {
 
 /// Whole sequences with the derivatives of every jump: `first` has those of the first one, jumps the
 /// outcomes.
-inline GradientSolver in_sequence(GradientSolver first, JumpSolver<double> jumps, DualJumpSolver duals,
-                                  const Scene& scene) {
+inline GradientSolver in_sequence(GradientSolver first, JumpSolver<double> jumps,
+                                  DualJumpSolver<DesignDual> duals, const Scene& scene) {
   return [first = std::move(first), duals = std::move(duals), scene,
           sequences = std::make_shared<Sequences<double>>(std::move(jumps))](
              std::span<const Design> designs, std::span<Outcome> outcomes, Gradients& gradients) {
@@ -71,7 +78,7 @@ inline GradientSolver in_sequence(GradientSolver first, JumpSolver<double> jumps
           gradients.put(OutcomeNumber(of, jump), i, value, unit);
         };
         const Start start = jump == 1 ? Start::release : Start::landing;
-        if (duals(start, designs[i], Along::parameters, at, put).status != Status::jumped) break;
+        if (duals(start, designs[i], at, put).status != Status::jumped) break;
       }
     }
   };

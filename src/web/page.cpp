@@ -31,9 +31,9 @@ Solver first_jump_solver(const Scene& scene, double tolerance) {
   };
 }
 
-DualJumpSolver dual_solver(const Scene& scene, double tolerance) {
-  return scene.friction == Friction::coulomb ? friction::dual_jumps(scene, tolerance)
-                                             : noslip::dual_jumps(scene, tolerance);
+DualJumpSolver<StateDual> dual_solver(const Scene& scene, double tolerance) {
+  return scene.friction == Friction::coulomb ? friction::state_jumps(scene, tolerance)
+                                             : noslip::state_jumps(scene, tolerance);
 }
 
 void fill(std::span<const double> values, Design& design, Scene& scene) {

@@ -5,15 +5,21 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <random>
 #include <set>
 
+#include "engine/map_layout.hpp"
+#include "engine/provenance.hpp"
 #include "leapmap/errors.hpp"
+#include "leapmap/join.hpp"
 #include "leapmap/sweep.hpp"
 #include "map/shard_name.hpp"
 #include "model/model.hpp"
 #include "spec/designs.hpp"
+#include "support/small_map.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace leapmap {
 namespace {
@@ -145,6 +151,33 @@ TEST(Shards, AreNamedAndRead) {
   }
   for (const char* none : {"", "a.h5", "a.3-of.h5", "3-of-16", "a.17-of-16.h5", "a.3-of-16.h5.part"})
     EXPECT_FALSE(shard_by_name(none)) << none;
+}
+
+TEST(Shards, OfALeapmapThatCutsMapsIntoOtherTilesAreJoinedAsTheyAre) {
+  Spec spec;
+  spec.axes = {{"slope", {0.1, 0.2, 0.3}}, {"mass_ratio", {1, 2, 3, 4, 5}}};
+  const MapLayout layout = layout_of(spec);
+  const Tiling others({3, 5}, {2, 3});
+  ASSERT_NE(others.tile_shape(), tiling_of(spec).tile_shape());
+  const testing::TemporaryFolder folder;
+  const std::string path = folder / "map.h5";
+  const std::array<std::vector<std::size_t>, 2> shares{{{0, 3}, {1, 2}}};
+  for (std::size_t k = 0; k < shares.size(); ++k) {
+    const Tiling part = others.part(shares[k]);
+    const Shard shard{k + 1, shares.size()};
+    std::vector<hdf5::Attribute> attributes = provenance(spec, shard_filetype, title_of(spec));
+    attributes.emplace_back(shard_attribute, text_of(shard));
+    attributes.emplace_back(shard_tiles_attribute, bits_of(part.chosen(), others.size()));
+    attributes.emplace_back("threads", std::int64_t{1});
+    MapWriter writer = MapWriter::begin(shard_path(path, shard), layout, part, attributes, false);
+    testing::write_rest(writer, layout, part);
+    EXPECT_TRUE(writer.finish({}));
+  }
+  const auto report = join(path);
+  ASSERT_TRUE(report.has_value());
+  EXPECT_EQ(report->tiles, 4u);
+  const std::vector<double> heights = MapReader(path).read("jump_height", Tile{{0, 0}, {3, 5}, 15});
+  for (std::size_t i = 0; i < heights.size(); ++i) EXPECT_EQ(heights[i], static_cast<double>(i) + 0.25);
 }
 
 TEST(PartOfATiling, HasSomeOfTheTilesInTheirPlaces) {
