@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <type_traits>
 
 #include "friction/model.hpp"
 #include "friction/panel_forces.hpp"
@@ -40,12 +41,15 @@ Contact<D> contact_for(const Design& design, const Scene& scene) {
   }
 }
 
-/// The chain of one design's phases.
+/// The chain of one design's phases. Of a StateDual it knows neither derivatives of times nor ways.
 template <class D>
 class Chain {
+  static constexpr bool by_design = std::is_same_v<D, DesignDual>;
+
  public:
   Chain(const Hoop<D>& hoop, const Contact<D>& contact, const ContactState<D>& from, double second,
-        const SlidingPanels<D>& panels, const SlidingPanels<double>& plain_panels, const DualTime<D>& time)
+        const SlidingPanels<D>& panels, const SlidingPanels<double>& plain_panels,
+        const DualTime<DesignDual>& time)
       : panels_(panels),
         plain_panels_(plain_panels),
         time_(time),
@@ -57,8 +61,6 @@ class Chain {
     released_ = contact_energy(hoop_, at_);
   }
 
-  /// Spares the times of rolling: what becomes of the state does not depend on them.
-  void leave_out_times() { times_ = false; }
   /// Asks for what the way to the jump asks of hoop and motor.
   void follow_way() { meter_.emplace(hoop_, at_.spin); }
 
@@ -99,7 +101,7 @@ class Chain {
   /// Takes the plain solver's values, if the chain came to the same.
   bool agrees(const ContactState<double>& there) {
     bool near = true;
-    if (!times_) at_.time = D(there.time);
+    if constexpr (!by_design) at_.time = D(there.time);
     const auto take = [&](D& value, double number) {
       near = near && std::abs(value.value - number) <= agreement * (1.0 + std::abs(number));
       value.value = number;
@@ -122,8 +124,8 @@ class Chain {
     const D end = with_derivatives(to.angle, guard.value, guard.rate.value);
     const D left = vis_viva_past_release(roll, D(end - at_.angle)) / contact_inertia(hoop_, trig(end));
     if (!(left > D(0.0))) return false;
-    if (meter_) meter_->roll(roll, at_.spin, begun.turns, end);
-    if (times_) at_.time += time_.time(hoop_, at_.angle, at_.spin, begun.turns, end);
+    with_meter([&](auto& meter) { meter.roll(roll, at_.spin, begun.turns, end); });
+    if constexpr (by_design) at_.time += time_.time(hoop_, at_.angle, at_.spin, begun.turns, end);
     at_.travel += end - at_.angle;
     driven_ += hoop_.motor() * (end - at_.angle);
     at_.angle = end;
@@ -161,11 +163,11 @@ class Chain {
       at_.travel.by[k] += later * travels;
     }
     const D turned = at_.angle - from.angle;
-    if (meter_) {
+    with_meter([&](auto& meter) {
       const D force =
           sliding_motion(hoop_, trig(at_.angle), at_.spin * at_.spin, slide.friction).normal_force;
-      meter_->meet({force, at_.spin}), meter_->turn(turned);
-    }
+      meter.meet({force, at_.spin}), meter.turn(turned);
+    });
     if (slip_ends) at_.slip = D(0.0);
     driven_ += hoop_.motor() * turned;
     slipped_ += abs(at_.travel - from.travel - turned);
@@ -207,7 +209,7 @@ class Chain {
     panels_.solve(slide, at_, part, panel);
     if (!std::isfinite(panel.excess) || ++panels_taken_ > most_panels) return false;
     if (panel.excess <= resolved || !(panel.excess < 0.5 * excess)) {
-      if (meter_) meet(slide, part, panel);
+      with_meter([&](auto& meter) { meet(meter, slide, part, panel); });
       at_ = panel.end;
       slide.free_force = panel.free_force.end.value;
       return true;
@@ -224,7 +226,7 @@ class Chain {
   }
 
   /// The largest force and spins within a panel, which are looked for in plain numbers.
-  void meet(const typename SlidingPanels<D>::Slide& slide, const Part& part,
+  void meet(WayMeter<D>& meter, const typename SlidingPanels<D>::Slide& slide, const Part& part,
             const typename SlidingPanels<D>::Panel& panel) {
     const SlidingPanels<double>::Slide plain_slide{
         mapped<double>(hoop_, [](const D& number) { return number.value; }),
@@ -241,8 +243,8 @@ class Chain {
     plain_panels_.solve(plain_slide, from, plain_part, plain_panel);
     const PanelForces<double> known(plain_panels_, plain_slide, from, plain_part, plain_panel);
     const PanelForces<D> forces(panels_, slide, at_, part, panel);
-    meter_->slide([&](double place) { return known.rated_at(place); },
-                  [&](double place) { return forces.at(place); });
+    meter.slide([&](double place) { return known.rated_at(place); },
+                [&](double place) { return forces.at(place); });
   }
 
   /// From rest u = w^2 does not depend on the spin to first order, and yet time and slip at an angle do: a
@@ -255,6 +257,13 @@ class Chain {
     }
   }
 
+  /// Calls use(meter), if there is one.
+  template <class Use>
+  void with_meter(const Use& use) {
+    if constexpr (by_design)
+      if (meter_) use(*meter_);
+  }
+
   template <class Put>
   void fly(const Flight<double>& flight, bool first, bool jumps, const Put& put) {
     const Trig<D> phi = trig(at_.angle);
@@ -262,18 +271,20 @@ class Chain {
         with_derivatives(hoop_, phi, at_.spin, at_.normal, flight.apex_time, flight.flight_time);
     if (first) {
       put(&Outcome::first_jump_height, flown.height, 1.0);
-      put(&Outcome::first_jump_time, at_.time, second_);
+      if constexpr (by_design) put(&Outcome::first_jump_time, at_.time, second_);
     }
     if (jumps) {
       put_jump(put, at_.angle, at_.spin, at_.travel, flown, second_);
-      put(&Outcome::jump_time, at_.time, second_);
+      if constexpr (by_design) put(&Outcome::jump_time, at_.time, second_);
       put(&Outcome::dip,
           D(0.5) * height_above_plane(hoop_, phi, at_.spin, D(deepest(flight)), at_.normal).value, 1.0);
       put(&Outcome::energy_lost, released_ + driven_ - contact_energy(hoop_, at_), 1.0);
     }
-    if (meter_ && jumps)
-      put_way(meter_->way(), [&](double Outcome::*quantity, const D& value) { put(quantity, value, 1.0); });
-    if (meter_) meter_->fly(at_.spin, flown.flight_time);
+    with_meter([&](auto& meter) {
+      if (jumps)
+        put_way(meter.way(), [&](double Outcome::*quantity, const D& value) { put(quantity, value, 1.0); });
+      meter.fly(at_.spin, flown.flight_time);
+    });
     const D left_at = at_.travel, left = at_.angle;
     at_ = after_flight(hoop_, at_, flown.flight_time);
     if (turns_on_) driven_ += hoop_.motor() * (at_.angle - left);
@@ -296,11 +307,10 @@ class Chain {
 
   const SlidingPanels<D>& panels_;
   const SlidingPanels<double>& plain_panels_;
-  const DualTime<D>& time_;
+  const DualTime<DesignDual>& time_;
   double second_;
   Contact<D> contact_;
   Hoop<D> hoop_;
-  bool times_ = true;
   bool turns_on_;  // the motor, in flight
   ContactState<D> at_;
   D released_{0.0}, driven_{0.0}, slipped_{0.0};
@@ -332,8 +342,7 @@ void CoulombGradients::derive_solved(std::span<const Design> designs, const Scen
       continue;
     using D = DesignDual;
     Chain<D> chain(reduce(dual_parameters<D>(designs[i]), scene), contact_for<D>(designs[i], scene),
-                   dual_release(designs[i]), time_unit(scene), by_design_.panels, plain_panels_,
-                   by_design_.time);
+                   dual_release(designs[i]), time_unit(scene), panels_, plain_panels_, time_);
     if (follows_ways) chain.follow_way();
     chain.run(recorded, outcomes[i], [&](double Outcome::*quantity, D value, double unit) {
       if (kinetic_follows(designs[i])) value.by[by_mu_kinetic] = std::numeric_limits<double>::quiet_NaN();
@@ -350,10 +359,8 @@ Outcome CoulombGradients::jump(Start start, const Design& design, const Scene& s
   ContactState<double> landed = plain(at);
   Outcome outcome = recorded_way(finer_, start, design, landed, scene, recorded);
   if (outcome.status != Status::jumped) return outcome;
-  const InDuals<D>& work = in_duals<D>();
   Chain<D> chain(reduce(parameters_for<D>(design), scene), contact_for<D>(design, scene), at,
-                 time_unit(scene), work.panels, plain_panels_, work.time);
-  if (!put) chain.leave_out_times();
+                 time_unit(scene), panels<D>(), plain_panels_, time_);
   const bool known =
       chain.run(recorded, outcome, [&](double Outcome::*quantity, const D& value, double unit) {
         if (put) put(quantity, value, unit);

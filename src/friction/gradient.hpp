@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <type_traits>
 
 #include "friction/coulomb.hpp"
 #include "noslip/dual_time.hpp"
@@ -37,22 +38,18 @@ class CoulombGradients {
   static constexpr double finest = 1e-12;
 
   template <class D>
-  struct InDuals {
-    SlidingPanels<D> panels{finest};
-    DualTime<D> time{};
-  };
-  template <class D>
-  const InDuals<D>& in_duals() const {
+  const SlidingPanels<D>& panels() const {
     if constexpr (std::is_same_v<D, StateDual>)
-      return by_state_;
+      return panels_by_state_;
     else
-      return by_design_;
+      return panels_;
   }
 
   CoulombSolver<double> solver_, finer_;
   SlidingPanels<double> plain_panels_;
-  InDuals<DesignDual> by_design_;
-  InDuals<StateDual> by_state_;
+  SlidingPanels<DesignDual> panels_{finest};
+  SlidingPanels<StateDual> panels_by_state_{finest};
+  DualTime<DesignDual> time_;
 };
 
 }  // namespace leapmap

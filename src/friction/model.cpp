@@ -13,7 +13,7 @@ namespace leapmap::friction {
 
 /// Everything comes with the phases, wanted or not.
 Solver exact(const Scene& scene, double tolerance, const Wanted& wanted) {
-  if (scene.jumps > 1) return in_sequence(jumps(scene, tolerance, wanted), scene);
+  if (scene.jumps > 1) return in_sequence(long_jumps(scene, tolerance, wanted), scene);
   return [lanes = std::make_shared<CoulombLanes<Batch>>(tolerance), scene](std::span<const Design> designs,
                                                                            std::span<Outcome> outcomes) {
     lanes->solve(designs, scene, outcomes);
@@ -26,7 +26,7 @@ JumpSolver<double> jumps(const Scene& scene, double tolerance, const Wanted&) {
              std::span<Outcome> outcomes) { lanes->solve(start, designs, states, scene, outcomes); };
 }
 
-LongJumpSolver long_jumps(const Scene& scene, double tolerance, const Wanted&) {
+LongJumpSolver<double> long_jumps(const Scene& scene, double tolerance, const Wanted&) {
   return [lanes = std::make_shared<CoulombLanes<Batch>>(tolerance), scene](
              Start start, std::span<const Design> designs, std::span<ContactState<double>> states,
              std::span<Outcome> outcomes,

@@ -20,7 +20,7 @@ Solver exact(const Scene& scene, double tolerance, const Wanted& wanted);
 JumpSolver<double> jumps(const Scene& scene, double tolerance, const Wanted& wanted);
 
 /// The same from landing to landing, each design as fast as it goes.
-LongJumpSolver long_jumps(const Scene& scene, double tolerance, const Wanted& wanted);
+LongJumpSolver<double> long_jumps(const Scene& scene, double tolerance, const Wanted& wanted);
 
 /// The same with derivatives (gradient.hpp).
 GradientSolver gradients(const Scene& scene, double tolerance, const Wanted& wanted,

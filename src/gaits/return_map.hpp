@@ -59,7 +59,7 @@ inline constexpr Wanted untimed{
 
 /// How designs go on from one landing to the next, each jump alone.
 struct JumpSolvers {
-  LongJumpSolver jumps;            ///< untimed
+  LongJumpSolver<double> jumps;    ///< untimed
   JumpSolver<double> timed_jumps;  ///< with all that there is
   DualJumpSolver<StateDual> duals;
 };

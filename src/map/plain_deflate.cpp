@@ -113,14 +113,39 @@ void PlainDeflate::finish() {
   put_last_bits();
 }
 
+namespace {
+
+constexpr std::size_t word_bytes = sizeof(std::uint64_t);
+
+std::uint64_t word_at(std::span<const std::byte> bytes, std::size_t place) {
+  std::uint64_t word = 0;
+  std::memcpy(&word, bytes.data() + place, word_bytes);
+  return word;
+}
+
+bool is_one_byte(std::uint64_t word) { return word == std::rotl(word, 8); }
+
+/// Whether words of the bytes occur again, at whatever distance: of places a step apart and of all places of
+/// the last step, there are two at every distance.
+bool repeats_itself(std::span<const std::byte> bytes) {
+  constexpr std::size_t step = 128, slots = 16 * step;
+  const std::size_t last = bytes.size() - word_bytes - step;  // where the last step begins
+  std::array<std::uint8_t, slots> places{};                   // by a word's hash: of the last step, from 1
+  const auto slot_of = [](std::uint64_t word) { return word * 0x9e3779b97f4a7c15u >> 53; };
+  for (std::size_t k = 0; k < step; ++k)
+    places[slot_of(word_at(bytes, last + k))] = static_cast<std::uint8_t>(k + 1);
+  for (std::size_t place = 0; place < last; place += step) {
+    const std::uint64_t word = word_at(bytes, place);
+    const std::size_t k = places[slot_of(word)];
+    if (k > 0 && word == word_at(bytes, last + k - 1) && !is_one_byte(word)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 void split_runs(std::span<const std::byte> bytes, std::vector<BytePiece>& pieces) {
   constexpr std::size_t least_run = 16;  // two changes of blocks take some ten bytes
-  constexpr std::size_t word_bytes = sizeof(std::uint64_t);
-  const auto word_at = [&](std::size_t i) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, bytes.data() + i, word_bytes);
-    return word;
-  };
   pieces.clear();
   std::size_t taken = 0;
   const auto take = [&](std::size_t end, bool is_run) {
@@ -128,14 +153,14 @@ void split_runs(std::span<const std::byte> bytes, std::vector<BytePiece>& pieces
     taken = end;
   };
   for (std::size_t i = 0; i + word_bytes <= bytes.size();) {
-    const std::uint64_t word = word_at(i);
-    if (word != std::rotl(word, 8)) {
+    const std::uint64_t word = word_at(bytes, i);
+    if (!is_one_byte(word)) {
       i += word_bytes;
       continue;
     }
     std::size_t begin = i, end = i + word_bytes;
     while (begin > taken && bytes[begin - 1] == bytes[i]) --begin;
-    while (end + word_bytes <= bytes.size() && word_at(end) == word) end += word_bytes;
+    while (end + word_bytes <= bytes.size() && word_at(bytes, end) == word) end += word_bytes;
     while (end < bytes.size() && bytes[end] == bytes[i]) ++end;
     if (end - begin >= least_run) take(begin, false), take(end, true);
     i = end;
@@ -145,7 +170,7 @@ void split_runs(std::span<const std::byte> bytes, std::vector<BytePiece>& pieces
 
 bool is_noise(std::span<const std::byte> bytes) {
   constexpr std::size_t most_samples = 32, each = 64;
-  if (bytes.size() < 2 * each) return false;
+  if (bytes.size() < 3 * each) return false;
   const std::size_t samples = std::min(most_samples, (bytes.size() - 1) / each), all = samples * each;
   std::array<unsigned, 256> met{};
   std::size_t repeated = 0;
@@ -160,7 +185,7 @@ bool is_noise(std::span<const std::byte> bytes) {
   const std::size_t others = all - repeated;
   std::size_t pairs = 0;
   for (const std::size_t n : met) pairs += n * (n - 1) / 2;
-  return repeated <= all / 8 && pairs < others * (others - 1) / 256;
+  return repeated <= all / 8 && pairs < others * (others - 1) / 256 && !repeats_itself(bytes);
 }
 
 }  // namespace leapmap

@@ -42,7 +42,7 @@ class PlainDeflate {
   int waiting_ = 0;         // how many
 };
 
-/// Neighbouring bytes: one and the same, or anything.
+/// A run of one byte, or the bytes between two runs.
 struct BytePiece {
   std::span<const std::byte> bytes;
   bool is_run;
@@ -51,8 +51,9 @@ struct BytePiece {
 /// Tells runs from what is between them, in order.
 void split_runs(std::span<const std::byte> bytes, std::vector<BytePiece>& pieces);
 
-/// Whether bytes look like noise, which deflate takes long to pass on as it is: in samples of them an eighth
-/// at most repeats what is before, and the others hold more than 7 bits a byte, so that none is frequent.
+/// Whether bytes look like noise, which deflate takes long to pass on as it is. In samples of them an eighth
+/// at most is the same as the byte before, and the others hold more than 7 bits a byte, so that none is
+/// frequent. No row of them is the same as one before, however far.
 bool is_noise(std::span<const std::byte> bytes);
 
 }  // namespace leapmap

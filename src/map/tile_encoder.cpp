@@ -196,13 +196,19 @@ std::size_t TileEncoder::pack(std::span<const std::byte> values, std::size_t pla
   return written + trailer;
 }
 
-/// Splits a plane into pieces_, and tells whether what lies between its runs is noise, or next to nothing.
+/// Splits a plane into pieces_, and tells whether what lies between its runs is noise, or next to nothing;
+/// and whether the runs are so few that writing each by itself costs little. A search would take some eight
+/// bytes less for each.
 bool TileEncoder::is_plain(std::span<const std::byte> plane) {
   split_runs(plane, pieces_);
   between_.clear();
-  for (const BytePiece& piece : pieces_)
+  std::size_t runs = 0;
+  for (const BytePiece& piece : pieces_) {
+    runs += piece.is_run;
     if (!piece.is_run) between_.insert(between_.end(), piece.bytes.begin(), piece.bytes.end());
-  return 64 * between_.size() <= plane.size() || is_noise(between_);
+  }
+  const bool are_few = 64 * runs <= between_.size() + plane.size() / 8;
+  return are_few && (64 * between_.size() <= plane.size() || is_noise(between_));
 }
 
 }  // namespace leapmap

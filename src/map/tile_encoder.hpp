@@ -70,7 +70,7 @@ class TileEncoder {
   StatusCounts statuses_{};                      ///< of what was taken
   std::vector<std::byte> chunk_, shuffled_, packed_;
   std::vector<BytePiece> pieces_;   ///< of the plane in hand
-  std::vector<std::byte> between_;  ///< its runs
+  std::vector<std::byte> between_;  ///< its bytes that are in no run
 };
 
 }  // namespace leapmap

@@ -54,7 +54,7 @@ struct Model {
   /// As `jumps`, and tells what the way to each jump asks of hoop and motor.
   JumpSolver<double> (*ways)(const Scene&, double tolerance);
   /// As `jumps`, from landing to landing; null: in rounds.
-  LongJumpSolver (*long_jumps)(const Scene&, double tolerance, const Wanted&) = nullptr;
+  LongJumpSolver<double> (*long_jumps)(const Scene&, double tolerance, const Wanted&) = nullptr;
   Mechanism mechanism = Mechanism::hoop;  ///< in specs: the value of scene.model
   std::string_view stepper{};             ///< with which method = "auto" integrates; empty: it is "exact"
 };

@@ -16,7 +16,7 @@ namespace {
 template <class D>
 struct Workspace {
   ExactSolver<double> solver;
-  DualTime<D> time{};
+  DualTime<DesignDual> time{};
 };
 
 template <class D>
@@ -33,9 +33,10 @@ Outcome jump_on(Workspace<D>& work, const Scene& scene, Start start, const Desig
   if (!told.bounces || told.lift_offs.size() > 1) {
     // The same N at every angle, whichever way it rolls.
     const LiftOffDual<D> off = lift_off_at(begin_roll(hoop, at.angle, at.spin), told.lift_offs.back().angle);
-    if (put)
-      at.time +=
-          work.time.time(hoop, at.angle, at.spin, std::span(told.turns).first(told.legs.back()), off.angle);
+    if constexpr (std::is_same_v<D, DesignDual>)
+      if (put)
+        at.time +=
+            work.time.time(hoop, at.angle, at.spin, std::span(told.turns).first(told.legs.back()), off.angle);
     at.travel += off.angle - at.angle;
     at.angle = off.angle;
     at.spin = told.lift_offs.back().spin < 0.0 ? -off.spin : off.spin;
@@ -44,7 +45,7 @@ Outcome jump_on(Workspace<D>& work, const Scene& scene, Start start, const Desig
                                                 outcome.apex_time / second, outcome.flight_time / second);
   if (put) {
     put_jump(put, at.angle, at.spin, at.travel, flight, second);
-    put(&Outcome::jump_time, at.time, second);
+    if constexpr (std::is_same_v<D, DesignDual>) put(&Outcome::jump_time, at.time, second);
     put_measures(measures_of(hoop, at.angle, at.spin, flight.flight_time), D(1.0),
                  [&](double Outcome::*kept, const D& value) { put(kept, value, 1.0); });
   }

@@ -55,6 +55,5 @@ D DualTime<D>::time(const Hoop<D>& hoop, const D& angle, const D& spin, std::spa
 
 template class DualTime<RollingDual>;
 template class DualTime<DesignDual>;
-template class DualTime<StateDual>;
 
 }  // namespace leapmap

@@ -10,7 +10,7 @@
 
 namespace leapmap {
 
-/// D: DesignDual, RollingDual or StateDual.
+/// D: DesignDual, or RollingDual.
 template <class D>
 class DualTime {
  public:

@@ -145,7 +145,6 @@ template class HalvedTime<double>;
 #ifdef LEAPMAP_KERNELS
 template class HalvedTime<RollingDual>;
 template class HalvedTime<DesignDual>;
-template class HalvedTime<StateDual>;
 #endif
 #ifdef LEAPMAP_SCALARS
 template class HalvedTime<long double>;

@@ -52,11 +52,11 @@ struct UnprovedBox {
   std::size_t cuts = 0;
 };
 
-/// The halves of a part along one axis after the other.
-std::array<UnprovedBox, 2> halves(const UnprovedBox& part, const std::vector<double Design::*>& varying) {
-  const auto member = varying[part.cuts % varying.size()];
-  std::array<UnprovedBox, 2> two{part, part};
-  two[0].box.to.*member = two[1].box.from.*member = middle_of(part.box.from.*member, part.box.to.*member);
+/// The halves of a box along one axis after the other.
+std::array<UnprovedBox, 2> halves(const UnprovedBox& whole, const std::vector<double Design::*>& varying) {
+  const auto member = varying[whole.cuts % varying.size()];
+  std::array<UnprovedBox, 2> two{whole, whole};
+  two[0].box.to.*member = two[1].box.from.*member = middle_of(whole.box.from.*member, whole.box.to.*member);
   for (UnprovedBox& half : two) ++half.cuts;
   return two;
 }

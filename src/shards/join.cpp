@@ -20,6 +20,7 @@
 #include "map/writer.hpp"
 #include "shards/join_faults.hpp"
 #include "shards/shard.hpp"
+#include "spec/designs.hpp"
 #include "spec/map_spec.hpp"
 #include "support/output_file.hpp"
 #include "support/printable.hpp"
@@ -151,6 +152,7 @@ class Joining {
           fmt::format("{}: is shard {} despite its name; allowed: shard {}/{}", path, told, i, shards_));
     if (!shard.is_whole()) throw BrokenFile("it is incomplete");
     const Spec spec = spec_of(shard, path);
+    if (shard.shape() != shape_of(spec)) throw BrokenFile("its dimensions are not those of its spec");
     if (!tiling_) {
       spec_ = spec;
       first_ = path;
@@ -165,6 +167,7 @@ class Joining {
     refuse_other_program(shard, path);
     add_up(shard);
     const std::vector<std::size_t> tiles = tiles_held(shard.file(), tiling_->size());
+    check_layout(shard.file(), layout_, *tiling_, path);
     holder.resize(tiling_->size());
     for (const std::size_t t : tiles) {
       if (holder[t] != 0)

@@ -137,11 +137,11 @@ std::vector<std::size_t> tiles_held(hid_t shard, std::size_t count) {
 }
 
 std::vector<std::size_t> tiles_in(const std::vector<std::int64_t>& bits, std::size_t count) {
-  if (bits.size() != (count + 63) / 64) throw BrokenFile("its shard_tiles do not match its spec");
+  if (bits.size() != (count + 63) / 64) throw BrokenFile("its shard_tiles do not match its chunks");
   std::vector<std::size_t> tiles;
   for (std::size_t t = 0; t < 64 * bits.size(); ++t) {
     if ((static_cast<std::uint64_t>(bits[t / 64]) >> (t % 64) & 1u) == 0) continue;
-    if (t >= count) throw BrokenFile("its shard_tiles do not match its spec");
+    if (t >= count) throw BrokenFile("its shard_tiles do not match its chunks");
     tiles.push_back(t);
   }
   return tiles;

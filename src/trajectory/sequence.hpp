@@ -2,7 +2,6 @@
 /// Jump after jump: from a landing on to the next one, whatever the model and the method.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -10,6 +9,7 @@
 #include <numbers>
 #include <numeric>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "hoop/contact_state.hpp"
@@ -35,9 +35,9 @@ using JumpSolver = std::function<void(Start, std::span<const Design>, std::span<
 /// the state may be changed.
 using GoesOn = std::function<bool(std::size_t i)>;
 /// As a JumpSolver, jump after jump: each design as long as it jumps and goes on.
-using LongJumpSolver =
-    std::function<void(Start, std::span<const Design>, std::span<ContactState<double>> states,
-                       std::span<Outcome>, const GoesOn&)>;
+template <class S>
+using LongJumpSolver = std::function<void(Start, std::span<const Design>, std::span<ContactState<S>> states,
+                                          std::span<Outcome>, const GoesOn&)>;
 
 /// A jump solver that takes one design after another, by anything that solves one.
 template <class S, class One>
@@ -65,10 +65,11 @@ bool is_beyond(const Scene& scene, const ContactState<S>& at) {
 inline bool is_of_no_flight(const Outcome& outcome) { return outcome.flight_time == 0.0; }
 
 /// All designs make their first jump, then all that go on their second one.
-inline LongJumpSolver in_rounds(JumpSolver<double> next) {
+template <class S = double>
+LongJumpSolver<S> in_rounds(std::type_identity_t<JumpSolver<S>> next) {
   return [next = std::move(next), going = std::vector<std::size_t>(), some = std::vector<Design>(),
-          at = std::vector<ContactState<double>>(), found = std::vector<Outcome>()](
-             Start start, std::span<const Design> designs, std::span<ContactState<double>> states,
+          at = std::vector<ContactState<S>>(), found = std::vector<Outcome>()](
+             Start start, std::span<const Design> designs, std::span<ContactState<S>> states,
              std::span<Outcome> outcomes, const GoesOn& goes_on) mutable {
     going.resize(designs.size());
     std::iota(going.begin(), going.end(), std::size_t{0});
@@ -91,58 +92,52 @@ inline LongJumpSolver in_rounds(JumpSolver<double> next) {
 template <class S>
 class Sequences {
  public:
-  explicit Sequences(JumpSolver<S> next) : next_(std::move(next)) {}
+  explicit Sequences(LongJumpSolver<S> jumps) : jumps_(std::move(jumps)) {}
+  explicit Sequences(JumpSolver<S> next) : Sequences(in_rounds<S>(std::move(next))) {}
 
   void solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes) {
-    states_.clear(), going_.clear();
+    states_.clear(), last_.resize(designs.size());
     for (const Design& design : designs) states_.push_back(released<S>(design));
-    next_(Start::release, designs, states_, outcomes);
+    for (Outcome& outcome : outcomes) outcome = Outcome{};
+    jumps_(Start::release, designs, states_, last_,
+           [&](std::size_t i) { return goes_on(scene, states_[i], last_[i], outcomes[i]); });
     for (std::size_t i = 0; i < designs.size(); ++i) {
-      outcomes[i].sequence_end = outcomes[i].status;
-      if (outcomes[i].status == Status::jumped) going_.push_back(i);
+      const Status end = last_[i].status;
+      if (outcomes[i].jumps() == 0) outcomes[i] = last_[i];
+      outcomes[i].sequence_end = end;
     }
-    for (long jump = 2; jump <= scene.jumps && !going_.empty(); ++jump) go_on(designs, scene, outcomes);
   }
 
  private:
-  /// One jump more of those that still go on.
-  void go_on(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes) {
-    std::erase_if(going_, [&](std::size_t i) {
-      const bool is_over = is_beyond(scene, states_[i]);
-      if (is_over) outcomes[i].sequence_end = Status::no_jump;
-      return is_over;
-    });
-    if (going_.empty()) return;
-    some_.clear(), some_states_.clear(), found_.resize(going_.size());
-    for (const std::size_t i : going_) some_.push_back(designs[i]), some_states_.push_back(states_[i]);
-    next_(Start::landing, some_, some_states_, found_);
-    std::size_t kept = 0;
-    for (std::size_t k = 0; k < going_.size(); ++k) {
-      const std::size_t i = going_[k];
-      if (found_[k].status == Status::jumped && is_of_no_flight(found_[k]))
-        found_[k].status = Status::indeterminate;
-      outcomes[i].sequence_end = found_[k].status;
-      if (found_[k].status != Status::jumped) continue;
-      states_[i] = some_states_[k];
-      outcomes[i].later_jumps.push_back(jump_of(found_[k], static_cast<double>(states_[i].spin)));
-      going_[kept++] = i;
+  /// Keeps a jump that has just landed. `last` tells at the end why there is no further one.
+  static bool goes_on(const Scene& scene, const ContactState<S>& landed, Outcome& last, Outcome& outcome) {
+    if (outcome.jumps() == 0) {
+      outcome = last;
+    } else if (is_of_no_flight(last)) {
+      last.status = Status::indeterminate;
+      return false;
+    } else {
+      outcome.later_jumps.push_back(jump_of(last, static_cast<double>(landed.spin)));
     }
-    going_.resize(kept);
+    if (outcome.jumps() >= static_cast<std::size_t>(scene.jumps)) return false;
+    if (is_beyond(scene, landed)) last.status = Status::no_jump;
+    return last.status == Status::jumped;
   }
 
-  JumpSolver<S> next_;
-  std::vector<ContactState<S>> states_, some_states_;
-  std::vector<std::size_t> going_;
-  std::vector<Design> some_;
-  std::vector<Outcome> found_;
+  LongJumpSolver<S> jumps_;
+  std::vector<ContactState<S>> states_;
+  std::vector<Outcome> last_;  // of each design: its last jump, or why there was none
 };
 
 /// A solver of whole sequences.
-inline Solver in_sequence(JumpSolver<double> next, const Scene& scene) {
-  return [sequences = std::make_shared<Sequences<double>>(std::move(next)), scene](
+inline Solver in_sequence(LongJumpSolver<double> jumps, const Scene& scene) {
+  return [sequences = std::make_shared<Sequences<double>>(std::move(jumps)), scene](
              std::span<const Design> designs, std::span<Outcome> outcomes) {
     sequences->solve(designs, scene, outcomes);
   };
+}
+inline Solver in_sequence(JumpSolver<double> next, const Scene& scene) {
+  return in_sequence(in_rounds(std::move(next)), scene);
 }
 
 }  // namespace leapmap

@@ -18,10 +18,10 @@ template <class D>
 using PutDual = std::function<void(double Outcome::*quantity, const D& value, double unit)>;
 
 /// Takes a design from a state with derivatives to just after the landing of its next jump, whose quantities
-/// it puts if `put` is set, and returns the outcome. DesignDual: by the design's parameters, in the order of
-/// `differentiable`. StateDual: by whatever the duals of the state that it begins at mean, the design being
-/// constant. Derivatives that are infinite or not known are NaN from there on; those of times may be wrong
-/// unless something is put. Owns its workspace: one a thread.
+/// it puts if `put` is set, and returns the outcome. Derivatives that are infinite or not known are NaN from
+/// there on. DesignDual: by the design's parameters, in the order of `differentiable`; those of times need
+/// `put`. StateDual: by whatever the duals of the state that it begins at mean, the design being constant;
+/// the state's time has none, and times since the release are not put. Owns its workspace: one a thread.
 template <class D>
 using DualJumpSolver =
     std::function<Outcome(Start, const Design&, ContactState<D>& at, const PutDual<D>& put)>;

@@ -187,7 +187,6 @@ void WayMeter<S>::fly(const S& spin, const S& time) {
 template class WayMeter<double>;
 template class WayMeter<RollingDual>;
 template class WayMeter<DesignDual>;
-template class WayMeter<StateDual>;
 #endif
 
 }  // namespace leapmap

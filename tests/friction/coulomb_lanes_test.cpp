@@ -107,7 +107,7 @@ TEST(CoulombLanes, JumpsOfDesignsOnTheirOwnAreThoseInRoundsToTheLastBit) {
     std::vector<ContactState<double>> states;
     std::vector<int> jumps;
   };
-  const auto follow = [&](const LongJumpSolver& solver) {
+  const auto follow = [&](const LongJumpSolver<double>& solver) {
     Followed told{std::vector<Outcome>(designs.size()), {}, std::vector<int>(designs.size())};
     for (const Design& design : designs) told.states.push_back(released<double>(design));
     solver(Start::release, designs, told.states, told.ends, [&](std::size_t i) {

@@ -115,7 +115,7 @@ TEST(PlainDeflate, SplitsRunsFromWhatIsBetweenThem) {
 }
 
 TEST(PlainDeflate, NoiseIsToldFromNumbersAndText) {
-  for (const std::size_t size : {128u, 300u, 4096u, 100'000u}) {
+  for (const std::size_t size : {200u, 300u, 4096u, 100'000u}) {
     int told = 0;
     for (unsigned seed = 0; seed < 100; ++seed) told += is_noise(noise(size, seed));
     EXPECT_GE(told, 90) << size << ": of few bytes some look like more than noise";
@@ -129,7 +129,22 @@ TEST(PlainDeflate, NoiseIsToldFromNumbersAndText) {
     EXPECT_FALSE(is_noise(few)) << size;
     EXPECT_FALSE(is_noise(repeats)) << size;
   }
-  EXPECT_FALSE(is_noise(noise(127, 1))) << "too few to tell";
+  EXPECT_FALSE(is_noise(noise(191, 1))) << "too few to tell";
+}
+
+TEST(PlainDeflate, RowsThatComeAgainAreNoNoiseHoweverLong) {
+  std::mt19937 random(8);
+  for (const std::size_t size : {2048u, 16384u}) {
+    int told = 0;
+    for (int trial = 0; trial < 200; ++trial) {
+      const Bytes row = noise(200 + random() % (size / 3), random());
+      Bytes rows;
+      while (rows.size() < size) rows.insert(rows.end(), row.begin(), row.end());
+      rows.resize(size);
+      told += is_noise(rows);
+    }
+    EXPECT_LE(told, 4) << size << ": where two words share a slot one of them is forgotten";
+  }
 }
 
 }  // namespace

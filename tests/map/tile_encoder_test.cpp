@@ -147,31 +147,49 @@ TEST(TileEncoder, PassesNoiseOnAsStoredBlocksOfTheSameStream) {
   expect_read_back(layout, tiling, encoded, outcomes);
 }
 
-TEST(TileEncoder, WritesRunsAndTheNoiseBetweenThemWithoutASearch) {
+/// A tile of 80 x 64 heights: NaN, and eight random bytes, but for the two of exponents, where `jumps` says.
+struct SparseTile {
   MapLayout layout = testing::small_layout();
-  layout.fields = {find_field("jump_height")};
-  layout.axes = {{"slope", "rad", "", std::vector<double>(80)},
-                 {"mass_ratio", "1", "", std::vector<double>(64)}};
-  layout.compression = 1;
-  const Tiling tiling({80, 64}, {80, 64});
-  std::mt19937_64 random(7);
-  const auto with_jumps = [&](std::size_t from, std::size_t to) {
-    std::vector<Outcome> outcomes(tiling.designs());
+  Tiling tiling{{80, 64}, {80, 64}};
+  std::vector<Outcome> outcomes;
+
+  template <class Jumps>
+  explicit SparseTile(const Jumps& jumps) : outcomes(tiling.designs()) {
+    layout.fields = {find_field("jump_height")};
+    layout.axes = {{"slope", "rad", "", std::vector<double>(80)},
+                   {"mass_ratio", "1", "", std::vector<double>(64)}};
+    std::mt19937_64 random(7);
     for (std::size_t i = 0; i < outcomes.size(); ++i)
-      if (i % 64 >= from && i % 64 < to)
-        outcomes[i].jump_height = std::ldexp(1.0, -1) + std::ldexp(static_cast<double>(random() >> 11), -54);
-    return outcomes;
-  };
-  // Most designs do not jump, those in the middle of each row do: six bytes of noise, and two that repeat.
-  for (const std::size_t width : {0u, 8u, 20u, 64u}) {
-    SCOPED_TRACE(width);
-    const std::vector<Outcome> outcomes = with_jumps(20, 20 + std::min<std::size_t>(width, 44));
-    const EncodedTile encoded = testing::encoded(layout, tiling, 0, outcomes);
-    EXPECT_EQ(encoded.chunks[0].skipped_filters, 0u);
-    const std::size_t jumps = 80 * std::min<std::size_t>(width, 44);
-    EXPECT_LE(encoded.chunks[0].bytes.size(), 7 * jumps + 8 * 80 * 12 + 200) << "ten bytes a row and plane";
-    expect_read_back(layout, tiling, encoded, outcomes);
+      if (jumps(i)) outcomes[i].jump_height = 0.5 + std::ldexp(static_cast<double>(random() >> 11), -54);
   }
+};
+
+TEST(TileEncoder, WritesRunsAndTheNoiseBetweenThemWithoutASearch) {
+  for (const std::size_t rows : {0u, 3u, 40u}) {  // that jump, in the middle of the tile
+    SCOPED_TRACE(rows);
+    const SparseTile tile([&](std::size_t i) { return i / 64 >= 20 && i / 64 < 20 + rows; });
+    const EncodedTile encoded = testing::encoded(tile.layout, tile.tiling, 0, tile.outcomes);
+    const std::vector<std::byte>& bytes = encoded.chunks[0].bytes;
+    EXPECT_EQ(encoded.chunks[0].skipped_filters, 0u);
+    EXPECT_EQ(std::to_integer<int>(bytes[2]) & 7, 2) << "a block of fixed codes, and not the last";
+    EXPECT_LE(bytes.size(), 7 * 64 * rows + 8 * 50) << "runs and block heads of eight planes";
+    expect_read_back(tile.layout, tile.tiling, encoded, tile.outcomes);
+  }
+}
+
+TEST(TileEncoder, SearchesWhereRunsAreShortOrRowsComeAgain) {
+  const SparseTile few([](std::size_t i) { return i % 17 == 0; });
+  const EncodedTile encoded = testing::encoded(few.layout, few.tiling, 0, few.outcomes);
+  EXPECT_LE(encoded.chunks[0].bytes.size(), 5120u)
+      << "301 numbers, and some six bytes for the gap before each";
+  expect_read_back(few.layout, few.tiling, encoded, few.outcomes);
+
+  SparseTile rows([](std::size_t) { return true; });
+  for (std::size_t i = 320; i < rows.outcomes.size(); ++i)
+    rows.outcomes[i].jump_height = rows.outcomes[i - 320].jump_height;
+  const EncodedTile again = testing::encoded(rows.layout, rows.tiling, 0, rows.outcomes);
+  EXPECT_LE(again.chunks[0].bytes.size(), 2u * 8u * 320u) << "320 different numbers";
+  expect_read_back(rows.layout, rows.tiling, again, rows.outcomes);
 }
 
 }  // namespace
