@@ -18,7 +18,7 @@ namespace {
 }
 
 void check(const Body& body) {
-  constexpr double largest = 1e6, turn = 2.0 * std::numbers::pi;
+  constexpr double largest = 1e6, two_pi = 2.0 * std::numbers::pi;
   if (!(body.diameter >= 2e-9 && body.diameter <= largest))
     refuse("diameter", body.diameter, "a number in [2e-09, 1e+06], in m or as \"... mm\"");
   if (!(body.mass >= 1e-9 && body.mass <= largest))
@@ -33,7 +33,7 @@ void check(const Body& body) {
     if (!(weight.at >= 0.0 && weight.at <= radius))
       refuse(key("at"), weight.at,
              fmt::format("a number in [0, {}], up to the radius, in m or as \"... mm\"", radius));
-    if (!(std::abs(weight.angle) <= turn))
+    if (!(std::abs(weight.angle) <= two_pi))
       refuse(key("angle"), weight.angle, "a number in [-2 pi, 2 pi], in rad or as \"... deg\"");
     if (!(weight.inertia >= 0.0 && weight.inertia <= largest))
       refuse(key("inertia"), weight.inertia, "a number in [0, 1e+06], in kg m2 or as \"... g mm2\"");

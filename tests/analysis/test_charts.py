@@ -305,6 +305,7 @@ def test_a_damaged_trace_is_refused_with_one_line_that_names_it(damage, tmp_path
         tmp_path / "trace.h5") in done.stderr, done.stderr
 
 
+@pytest.mark.slow
 def test_designs_without_a_jump_are_told_apart_and_the_star_needs_its_panel(tmp_path):
     spec = CHART.replace("offset_ratio = { values = [0.7, 1.0] }",
                          'release_angle = { values = ["30 deg", "190 deg"] }')
@@ -486,6 +487,7 @@ def test_the_experiment_chart_marks_what_was_measured(tmp_path):
     assert "apex 0.129 s" in found and "release angle" in found and "small hops" in found
 
 
+@pytest.mark.slow
 def test_a_list_of_designs_is_drawn_a_dot_each_over_a_parameter_that_varies(tmp_path):
     (tmp_path / "designs.csv").write_text("slope,mass_ratio\n" +
                                           "".join(f"{5 + i} deg,{0.05 * 1.2**i}\n" for i in range(25)))
@@ -646,7 +648,7 @@ def test_the_yield_chart_wants_a_yield_over_two_axes(charts, tmp_path):
     assert refused.returncode == 2 and "has no yield" in refused.stderr and refused.stderr.count("\n") == 1
 
 
-@pytest.mark.parametrize("friction", ["sticking", "coulomb"])
+@pytest.mark.parametrize("friction", ["sticking", pytest.param("coulomb", marks=pytest.mark.slow)])
 def test_the_scatter_chart_shows_goals_quantiles_and_importance(friction, tmp_path):
     (tmp_path / "one.toml").write_text(MADE[MADE.index("[scatter]"):])
     told = leapmap("hop", tmp_path / "one.toml", "--scatter", "--json", "--friction", friction)

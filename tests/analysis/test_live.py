@@ -173,6 +173,7 @@ def test_an_address_is_what_was_seen(live, browser, tmp_path):
     assert height == again
 
 
+@pytest.mark.slow
 def test_goals_dim_what_fails_and_the_best_left_is_shown(live):
     live.execute_script("document.getElementById('filters').open = true")
     live.find_element("id", "goal-add").click()

@@ -306,9 +306,11 @@ def test_a_link_is_all_that_was_found(page, html):
                                                              marks=pytest.mark.slow),
                                                 pytest.param("#field=nonsense", "nonsense",
                                                              marks=pytest.mark.slow),
-                                                ("#hoop=slope:99", "not possible"),
+                                                pytest.param("#hoop=slope:99", "not possible",
+                                                             marks=pytest.mark.slow),
                                                 ("#hoop=<img src=x onerror=alert(1)>:1", "not possible"),
-                                                ("#design=1,2,3", "not on this map")])
+                                                pytest.param("#design=1,2,3", "not on this map",
+                                                             marks=pytest.mark.slow)])
 def test_an_address_that_asks_for_what_cannot_be_says_so(address, words, browser, html):
     at(browser, html, address)
     assert words in browser.find_element("id", "message").text
