@@ -7,7 +7,6 @@
 #include <functional>
 #include <memory>
 #include <numbers>
-#include <numeric>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -71,12 +70,14 @@ LongJumpSolver<S> in_rounds(std::type_identity_t<JumpSolver<S>> next) {
           at = std::vector<ContactState<S>>(), found = std::vector<Outcome>()](
              Start start, std::span<const Design> designs, std::span<ContactState<S>> states,
              std::span<Outcome> outcomes, const GoesOn& goes_on) mutable {
-    going.resize(designs.size());
-    std::iota(going.begin(), going.end(), std::size_t{0});
-    for (; !going.empty(); start = Start::landing) {
+    next(start, designs, states, outcomes);
+    going.clear();
+    for (std::size_t i = 0; i < designs.size(); ++i)
+      if (outcomes[i].status == Status::jumped && goes_on(i)) going.push_back(i);
+    while (!going.empty()) {
       some.clear(), at.clear(), found.resize(going.size());
       for (const std::size_t i : going) some.push_back(designs[i]), at.push_back(states[i]);
-      next(start, some, at, found);
+      next(Start::landing, some, at, found);
       std::size_t kept = 0;
       for (std::size_t k = 0; k < going.size(); ++k) {
         const std::size_t i = going[k];
