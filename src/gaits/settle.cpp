@@ -40,8 +40,8 @@ bool GaitSolver::orbit_of(const Design& design, Orbit& orbit) {
 }
 
 /// Follows each design until its jumps end or its orbit is plain: a transient that shrinks by the same factor
-/// from round to round need not be followed to its end. The orbits of those that still jump after
-/// scene_.settle jumps are looked for.
+/// from round to round need not be followed to its end. Where a design still jumps after scene_.settle jumps,
+/// looks for its orbit.
 void GaitSolver::follow(std::span<const Design> designs,
                         const std::function<void(std::size_t, const Orbit&)>& found) {
   assert(scene_.settle > 0 && scene_.most_period > 0);

@@ -48,7 +48,7 @@ struct BytePiece {
   bool is_run;
 };
 
-/// Tells runs from what is between them, in order.
+/// Divides bytes into runs and what is between them, in order.
 void split_runs(std::span<const std::byte> bytes, std::vector<BytePiece>& pieces);
 
 /// Whether bytes look like noise, which deflate takes long to pass on as it is. In samples of them an eighth

@@ -16,8 +16,8 @@ std::size_t product(const std::vector<std::size_t>& extents) {
   return std::accumulate(extents.begin(), extents.end(), std::size_t{1}, std::multiplies<>());
 }
 
-/// Doubles the shortest side that can still grow until the tile is as large as it should be. Then sides are
-/// made so short that the same number of them is just as long as the map: what reaches over its edge would be
+/// Doubles the shortest side that can still grow until the tile is as large as it should be. Then each
+/// side is shortened as far as the number of tiles along it allows: what reaches over the map's edge would be
 /// encoded, too.
 std::vector<std::size_t> balanced_tile(const std::vector<std::size_t>& shape, std::size_t most) {
   constexpr std::size_t smallest = 64, wanted_tiles = 64;

@@ -196,9 +196,8 @@ std::size_t TileEncoder::pack(std::span<const std::byte> values, std::size_t pla
   return written + trailer;
 }
 
-/// Splits a plane into pieces_, and tells whether what lies between its runs is noise, or next to nothing;
-/// and whether the runs are so few that writing each by itself costs little. A search would take some eight
-/// bytes less for each.
+/// Splits a plane into pieces_. Returns whether what lies between its runs is noise, or next to nothing, and
+/// the runs are few: each that is written by itself takes some eight bytes more than after a search.
 bool TileEncoder::is_plain(std::span<const std::byte> plane) {
   split_runs(plane, pieces_);
   between_.clear();

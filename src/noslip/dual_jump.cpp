@@ -13,15 +13,14 @@
 namespace leapmap::noslip {
 namespace {
 
-template <class D>
 struct Workspace {
   ExactSolver<double> solver;
   DualTime<DesignDual> time{};
 };
 
 template <class D>
-Outcome jump_on(Workspace<D>& work, const Scene& scene, Start start, const Design& design,
-                ContactState<D>& at, const PutDual<D>& put) {
+Outcome jump_on(Workspace& work, const Scene& scene, Start start, const Design& design, ContactState<D>& at,
+                const PutDual<D>& put) {
   ContactState<double> landed = plain(at);
   FoundLiftOffs told;
   Outcome outcome;
@@ -58,7 +57,7 @@ Outcome jump_on(Workspace<D>& work, const Scene& scene, Start start, const Desig
 
 template <class D>
 DualJumpSolver<D> jumps_in(const Scene& scene, double tolerance) {
-  const auto work = std::make_shared<Workspace<D>>(Workspace<D>{ExactSolver<double>(tolerance)});
+  const auto work = std::make_shared<Workspace>(Workspace{ExactSolver<double>(tolerance)});
   return [work, scene](Start start, const Design& design, ContactState<D>& at, const PutDual<D>& put) {
     return jump_on(*work, scene, start, design, at, put);
   };

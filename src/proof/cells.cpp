@@ -119,23 +119,23 @@ CellProof prove_cell(const DesignBox& box, const Scene& scene, bool times) {
   bool is_open = false, is_timed = true;
   while (!todo.empty()) {
     throw_if_stopped();
-    const UnprovedBox part = todo.back();
+    const UnprovedBox next = todo.back();
     todo.pop_back();
     ++cell.boxes;
-    const Proof proof = prove(part.box, scene, times);
+    const Proof proof = prove(next.box, scene, times);
     if (proof.proved) {
-      if (differs(outcome_kind(proof), designs_of(part.box, varying).front())) return cell;
+      if (differs(outcome_kind(proof), designs_of(next.box, varying).front())) return cell;
       widen(cell.height, proof.height), widen(cell.time, proof.time);
       is_timed = is_timed && !std::isnan(proof.time.low);
       continue;
     }
-    for (const Design& design : designs_of(part.box, varying))
+    for (const Design& design : designs_of(next.box, varying))
       if (is_another(design)) return cell;
-    if (varying.empty() || part.cuts == cuts_an_axis * varying.size() || cell.boxes >= most_boxes) {
+    if (varying.empty() || next.cuts == cuts_an_axis * varying.size() || cell.boxes >= most_boxes) {
       is_open = true;
       continue;
     }
-    for (const UnprovedBox& half : halves(part, varying)) todo.push_back(half);
+    for (const UnprovedBox& half : halves(next, varying)) todo.push_back(half);
   }
   cell.finding = is_open ? CellFinding::open : CellFinding::proved;
   if (is_open) cell.height = {};

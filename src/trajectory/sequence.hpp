@@ -110,7 +110,7 @@ class Sequences {
   }
 
  private:
-  /// Keeps a jump that has just landed. `last` tells at the end why there is no further one.
+  /// Keeps a jump that has just landed. Where no further one follows, last.status is the reason.
   static bool goes_on(const Scene& scene, const ContactState<S>& landed, Outcome& last, Outcome& outcome) {
     if (outcome.jumps() == 0) {
       outcome = last;

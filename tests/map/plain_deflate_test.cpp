@@ -114,11 +114,11 @@ TEST(PlainDeflate, SplitsRunsFromWhatIsBetweenThem) {
   }
 }
 
-TEST(PlainDeflate, NoiseIsToldFromNumbersAndText) {
+TEST(PlainDeflate, NoiseDiffersFromNumbersAndText) {
   for (const std::size_t size : {200u, 300u, 4096u, 100'000u}) {
-    int told = 0;
-    for (unsigned seed = 0; seed < 100; ++seed) told += is_noise(noise(size, seed));
-    EXPECT_GE(told, 90) << size << ": of few bytes some look like more than noise";
+    int found = 0;
+    for (unsigned seed = 0; seed < 100; ++seed) found += is_noise(noise(size, seed));
+    EXPECT_GE(found, 90) << size << ": a short sample of noise may look ordered";
     Bytes slow(size), few = noise(size, 1), repeats = noise(size, 2);
     for (std::size_t i = 0; i < size; ++i) {
       slow[i] = static_cast<std::byte>(i / 40 & 255u);
@@ -129,21 +129,21 @@ TEST(PlainDeflate, NoiseIsToldFromNumbersAndText) {
     EXPECT_FALSE(is_noise(few)) << size;
     EXPECT_FALSE(is_noise(repeats)) << size;
   }
-  EXPECT_FALSE(is_noise(noise(191, 1))) << "too few to tell";
+  EXPECT_FALSE(is_noise(noise(191, 1))) << "fewer than a sample needs";
 }
 
 TEST(PlainDeflate, RowsThatComeAgainAreNoNoiseHoweverLong) {
   std::mt19937 random(8);
   for (const std::size_t size : {2048u, 16384u}) {
-    int told = 0;
+    int found = 0;
     for (int trial = 0; trial < 200; ++trial) {
       const Bytes row = noise(200 + random() % (size / 3), random());
       Bytes rows;
       while (rows.size() < size) rows.insert(rows.end(), row.begin(), row.end());
       rows.resize(size);
-      told += is_noise(rows);
+      found += is_noise(rows);
     }
-    EXPECT_LE(told, 4) << size << ": where two words share a slot one of them is forgotten";
+    EXPECT_LE(found, 4) << size << ": two words may share a slot, and the first is forgotten";
   }
 }
 

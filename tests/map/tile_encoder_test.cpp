@@ -147,7 +147,7 @@ TEST(TileEncoder, PassesNoiseOnAsStoredBlocksOfTheSameStream) {
   expect_read_back(layout, tiling, encoded, outcomes);
 }
 
-/// A tile of 80 x 64 heights: NaN, and eight random bytes, but for the two of exponents, where `jumps` says.
+/// A tile of 80 x 64 heights: random from 0.5 to 1 for the designs that `jumps` picks, NaN for the others.
 struct SparseTile {
   MapLayout layout = testing::small_layout();
   Tiling tiling{{80, 64}, {80, 64}};
