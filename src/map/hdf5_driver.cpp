@@ -356,20 +356,34 @@ void refuse_other_unfinished(const std::string& path, std::string_view filetype,
         "{}: exists and is not an unfinished {}; allowed: another name, or remove it", path, filetype));
 }
 
-bool File::finish(const std::string& path, bool replace, const std::function<void(hid_t)>& verify) {
-  close();
-  // While HDF5 reads its bytes they are added up, of a long file by another thread if there can be one.
-  constexpr std::uint64_t is_long = std::uint64_t{4} << 20;
-  std::future<std::uint32_t> checksum = std::async(
-      bytes_->size() < is_long ? std::launch::deferred : std::launch::async | std::launch::deferred,
-      [&bytes = *bytes_] { return bytes.checksum(); });
-  {
+bool File::finish(const std::string& path, bool replace, const std::function<void(hid_t)>& verify,
+                  const std::function<void()>& committed) {
+  handle_.close(bytes_->path() + ": cannot be written");
+  // HDF5 reads what it has written, while of a long file other threads, if there can be any, take the bytes
+  // to disk and add them up.
+  JournaledFile& bytes = *bytes_;
+  const std::uint64_t size = bytes.size();
+  const bool is_long = size >= std::uint64_t{4} << 20;
+  const auto launch = is_long ? std::launch::async | std::launch::deferred : std::launch::deferred;
+  std::future<std::uint32_t> checksum = std::async(launch, [&, size] { return bytes.checksum(size); });
+  std::future<void> synced;
+  if (is_long) synced = std::async(launch, [&] { bytes.sync_appended(); });
+  std::exception_ptr wrong;
+  try {
     Handle written = open_in(bytes_, Mode::verify);
     verify(written);
     written.close(bytes_->path() + ": cannot be read");
+  } catch (...) {
+    wrong = std::current_exception();
   }
-  bytes_->seal(checksum.get());
-  const bool durable = bytes_->rename(path, replace);
+  bytes.resize(size);  // HDF5 moves the end as it opens a file
+  checksum.wait();
+  if (is_long) synced.get();
+  bytes.commit();
+  committed();
+  if (wrong) std::rethrow_exception(wrong);
+  bytes.seal(checksum.get());
+  const bool durable = bytes.rename(path, replace);
   bytes_.reset();
   return durable;
 }

@@ -119,19 +119,20 @@ void JournaledFile::lock(Locking locking) const {
 }
 
 void JournaledFile::read(std::uint64_t offset, std::span<std::byte> bytes) const {
-  attempt([&] {
-    const std::uint64_t end = offset + bytes.size();
-    const std::size_t there = offset < stored_ ? std::min<std::uint64_t>(bytes.size(), stored_ - offset) : 0;
-    read_all(descriptor_, path_, offset, bytes.first(there));
-    std::ranges::fill(bytes.subspan(there), std::byte{0});
-    for (const WaitingWrite& write : waiting_) {
-      const std::uint64_t first = std::max(offset, write.offset),
-                          last = std::min(end, write.offset + write.bytes.size());
-      if (first < last)
-        std::memcpy(bytes.data() + (first - offset), write.bytes.data() + (first - write.offset),
-                    last - first);
-    }
-  });
+  attempt([&] { read_as_written(offset, bytes); });
+}
+
+void JournaledFile::read_as_written(std::uint64_t offset, std::span<std::byte> bytes) const {
+  const std::uint64_t end = offset + bytes.size();
+  const std::size_t there = offset < stored_ ? std::min<std::uint64_t>(bytes.size(), stored_ - offset) : 0;
+  read_all(descriptor_, path_, offset, bytes.first(there));
+  std::ranges::fill(bytes.subspan(there), std::byte{0});
+  for (const WaitingWrite& write : waiting_) {
+    const std::uint64_t first = std::max(offset, write.offset),
+                        last = std::min(end, write.offset + write.bytes.size());
+    if (first < last)
+      std::memcpy(bytes.data() + (first - offset), write.bytes.data() + (first - write.offset), last - first);
+  }
 }
 
 bool JournaledFile::differs(std::uint64_t offset, std::span<const std::byte> bytes) const {
@@ -179,6 +180,10 @@ void JournaledFile::commit() {
   });
 }
 
+void JournaledFile::sync_appended() {
+  if (!abandoned_ && std::exchange(appended_, false)) sync(descriptor_, path_);
+}
+
 void JournaledFile::commit_first() {
   std::vector<std::byte> first(std::min(size_, signature_bytes));
   read(0, first);
@@ -192,7 +197,10 @@ void JournaledFile::commit_first() {
   if (!sync_folder(folder_of(path_))) throw IoError(path_ + ": its folder cannot be synced to disk");
 }
 
-std::uint32_t JournaledFile::checksum() const { return checksum_of(descriptor_, path_, 0, committed_); }
+std::uint32_t JournaledFile::checksum(std::uint64_t size) const {
+  return checksum_of(
+      0, size, [&](std::uint64_t offset, std::span<std::byte> bytes) { read_as_written(offset, bytes); });
+}
 
 void JournaledFile::seal(std::uint32_t checksum) {
   if (abandoned_) return;

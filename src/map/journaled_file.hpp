@@ -60,10 +60,12 @@ class JournaledFile {
   std::uint64_t size() const { return size_; }
   /// All writes so far take effect, on disk when this returns, in a file size() bytes long. Throws IoError.
   void commit();
-  /// Of all bytes of a file whose writes are all committed. Reads the whole file, and may do so while others
-  /// read it. Throws IoError.
-  std::uint32_t checksum() const;
-  /// Ends such a file with its checksum. Throws IoError.
+  /// Takes what was appended since the last commit to disk, so that the next one need not wait for it. Others
+  /// may read the file meanwhile. Throws IoError.
+  void sync_appended();
+  /// Of the first `size` bytes, as last written. Others may read the file meanwhile. Throws IoError.
+  std::uint32_t checksum(std::uint64_t size) const;
+  /// Ends a file whose writes are all committed with its checksum. Throws IoError.
   void seal(std::uint32_t checksum);
   /// Whether the bytes are those that were sealed; unset: the file has no seal, or was changed since by
   /// another program that knows none. Reads the whole file. Throws IoError.
@@ -91,6 +93,8 @@ class JournaledFile {
  private:
   void open(Locking locking);
   void lock(Locking locking) const;
+  /// Reads, and leaves failures to whoever asked.
+  void read_as_written(std::uint64_t offset, std::span<std::byte> bytes) const;
   void commit_first();
   void make_waiting_writes();
   /// Whether a write would change anything: HDF5 writes the same head again as it closes a file.

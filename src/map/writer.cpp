@@ -201,12 +201,13 @@ bool MapWriter::finish(std::span<const hdf5::Attribute> attributes) {
   hdf5::annotate(file_, attributes);
   hdf5::remove_attribute(file_, tiles_attribute);
   close_datasets();
-  return file_.finish(path_, replace_, [&](hid_t written) {
-    committed_ = progress_.designs();  // whatever becomes of its name
+  const auto verify = [&](hid_t written) {
     check_layout(written, *layout_, *tiling_, part_);
     if (!virtual_ && !tiles_are_as_written(written, *layout_, *tiling_, tiling_->size(), part_))
       throw BrokenFile(part_ + ": its chunks are not what was written");
-  });
+  };
+  // Whatever becomes of its name.
+  return file_.finish(path_, replace_, verify, [&] { committed_ = progress_.designs(); });
 }
 
 void MapWriter::keep(std::span<const hdf5::Attribute> attributes) {

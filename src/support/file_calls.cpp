@@ -70,11 +70,18 @@ void sync(int descriptor, const std::string& path) {
 }
 
 std::uint32_t checksum_of(int descriptor, const std::string& path, std::uint64_t begin, std::uint64_t end) {
+  return checksum_of(begin, end, [&](std::uint64_t offset, std::span<std::byte> bytes) {
+    read_all(descriptor, path, offset, bytes);
+  });
+}
+
+std::uint32_t checksum_of(std::uint64_t begin, std::uint64_t end,
+                          const std::function<void(std::uint64_t, std::span<std::byte>)>& read) {
   std::uint32_t sum = 0;
   std::vector<std::byte> block(std::min<std::uint64_t>(std::size_t{1} << 18, end - begin));
   for (std::uint64_t offset = begin; offset < end; offset += block.size()) {
     block.resize(std::min<std::uint64_t>(block.size(), end - offset));
-    read_all(descriptor, path, offset, block);
+    read(offset, block);
     sum = libdeflate_crc32(sum, block.data(), block.size());
   }
   return sum;

@@ -243,7 +243,7 @@ TEST(JournaledFile, RemembersItsFirstFailureAndCommitsNothingAfterIt) {
     testing::before_system_call = nullptr;  // from here on the disk works again
     EXPECT_THROW(file.write(file.end(), Bytes(10, std::byte{8})), IoError);
     EXPECT_THROW(file.commit(), IoError);
-    EXPECT_THROW(file.seal(file.checksum()), IoError);
+    EXPECT_THROW(file.seal(file.checksum(file.size())), IoError);
     EXPECT_THROW(file.rethrow_failure(), IoError);
   }
   EXPECT_EQ(bytes_of(folder / "file"), states.back());
@@ -256,7 +256,7 @@ TEST(JournaledFile, IsSealedWithAChecksumThatEveryChangedBitBreaks) {
     JournaledFile file(folder / "file", Access::change);
     EXPECT_FALSE(file.seal_holds().has_value()) << "not yet";
     file.commit();
-    file.seal(file.checksum());
+    file.seal(file.checksum(file.size()));
   }
   const Bytes sealed = bytes_of(folder / "file");
   ASSERT_EQ(sealed.size(), states.back().size() + 32);
