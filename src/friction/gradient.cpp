@@ -6,7 +6,6 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <type_traits>
 
 #include "friction/model.hpp"
 #include "friction/panel_forces.hpp"
@@ -30,7 +29,7 @@ constexpr double agreement = 1e-6;
 /// mu_static, being less than mu_kinetic, counts as much. Constants for a StateDual.
 template <class D>
 Contact<D> contact_for(const Design& design, const Scene& scene) {
-  if constexpr (std::is_same_v<D, StateDual>) {
+  if constexpr (!by_design<D>) {
     return contact_of<D>(design, scene);
   } else {
     const bool one = kinetic_follows(design) || design.mu_static < design.mu_kinetic;
@@ -41,11 +40,9 @@ Contact<D> contact_for(const Design& design, const Scene& scene) {
   }
 }
 
-/// The chain of one design's phases. Of a StateDual it knows neither derivatives of times nor ways.
+/// The chain of one design's phases.
 template <class D>
 class Chain {
-  static constexpr bool by_design = std::is_same_v<D, DesignDual>;
-
  public:
   Chain(const Hoop<D>& hoop, const Contact<D>& contact, const ContactState<D>& from, double second,
         const SlidingPanels<D>& panels, const SlidingPanels<double>& plain_panels,
@@ -101,7 +98,7 @@ class Chain {
   /// Takes the plain solver's values, if the chain came to the same.
   bool agrees(const ContactState<double>& there) {
     bool near = true;
-    if constexpr (!by_design) at_.time = D(there.time);
+    if constexpr (!by_design<D>) at_.time = D(there.time);
     const auto take = [&](D& value, double number) {
       near = near && std::abs(value.value - number) <= agreement * (1.0 + std::abs(number));
       value.value = number;
@@ -125,7 +122,7 @@ class Chain {
     const D left = vis_viva_past_release(roll, D(end - at_.angle)) / contact_inertia(hoop_, trig(end));
     if (!(left > D(0.0))) return false;
     with_meter([&](auto& meter) { meter.roll(roll, at_.spin, begun.turns, end); });
-    if constexpr (by_design) at_.time += time_.time(hoop_, at_.angle, at_.spin, begun.turns, end);
+    if constexpr (by_design<D>) at_.time += time_.time(hoop_, at_.angle, at_.spin, begun.turns, end);
     at_.travel += end - at_.angle;
     driven_ += hoop_.motor() * (end - at_.angle);
     at_.angle = end;
@@ -260,7 +257,7 @@ class Chain {
   /// Calls use(meter), if there is one.
   template <class Use>
   void with_meter(const Use& use) {
-    if constexpr (by_design)
+    if constexpr (by_design<D>)
       if (meter_) use(*meter_);
   }
 
@@ -271,11 +268,11 @@ class Chain {
         with_derivatives(hoop_, phi, at_.spin, at_.normal, flight.apex_time, flight.flight_time);
     if (first) {
       put(&Outcome::first_jump_height, flown.height, 1.0);
-      if constexpr (by_design) put(&Outcome::first_jump_time, at_.time, second_);
+      if constexpr (by_design<D>) put(&Outcome::first_jump_time, at_.time, second_);
     }
     if (jumps) {
       put_jump(put, at_.angle, at_.spin, at_.travel, flown, second_);
-      if constexpr (by_design) put(&Outcome::jump_time, at_.time, second_);
+      if constexpr (by_design<D>) put(&Outcome::jump_time, at_.time, second_);
       put(&Outcome::dip,
           D(0.5) * height_above_plane(hoop_, phi, at_.spin, D(deepest(flight)), at_.normal).value, 1.0);
       put(&Outcome::energy_lost, released_ + driven_ - contact_energy(hoop_, at_), 1.0);
@@ -320,14 +317,17 @@ class Chain {
 
 }  // namespace
 
-void CoulombGradients::solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes,
-                             Gradients& gradients) {
+template <class D>
+void CoulombGradients<D>::solve(std::span<const Design> designs, const Scene& scene,
+                                std::span<Outcome> outcomes, Gradients& gradients) requires by_design<D> {
   for (std::size_t i = 0; i < designs.size(); ++i) outcomes[i] = solver_.solve(designs[i], scene);
   derive_solved(designs, scene, outcomes, gradients);
 }
 
-void CoulombGradients::derive_solved(std::span<const Design> designs, const Scene& scene,
-                                     std::span<const Outcome> outcomes, Gradients& gradients) {
+template <class D>
+void CoulombGradients<D>::derive_solved(std::span<const Design> designs, const Scene& scene,
+                                        std::span<const Outcome> outcomes,
+                                        Gradients& gradients) requires by_design<D> {
   gradients.begin(designs.size());
   const std::vector<OutcomeNumber>& asked = gradients.wanted().of;
   const bool follows_ways = std::any_of(asked.begin(), asked.end(), is_of_way);
@@ -340,7 +340,6 @@ void CoulombGradients::derive_solved(std::span<const Design> designs, const Scen
     ContactState<double> at = released<double>(designs[i]);
     if (!same_flags(outcomes[i], recorded_way(finer_, Start::release, designs[i], at, scene, recorded)))
       continue;
-    using D = DesignDual;
     Chain<D> chain(reduce(dual_parameters<D>(designs[i]), scene), contact_for<D>(designs[i], scene),
                    dual_release(designs[i]), time_unit(scene), panels_, plain_panels_, time_);
     if (follows_ways) chain.follow_way();
@@ -353,14 +352,14 @@ void CoulombGradients::derive_solved(std::span<const Design> designs, const Scen
 }
 
 template <class D>
-Outcome CoulombGradients::jump(Start start, const Design& design, const Scene& scene, ContactState<D>& at,
-                               const PutDual<D>& put) {
+Outcome CoulombGradients<D>::jump(Start start, const Design& design, const Scene& scene, ContactState<D>& at,
+                                  const PutDual<D>& put) {
   RecordedWay recorded;
   ContactState<double> landed = plain(at);
   Outcome outcome = recorded_way(finer_, start, design, landed, scene, recorded);
   if (outcome.status != Status::jumped) return outcome;
   Chain<D> chain(reduce(parameters_for<D>(design), scene), contact_for<D>(design, scene), at,
-                 time_unit(scene), panels<D>(), plain_panels_, time_);
+                 time_unit(scene), panels_, plain_panels_, time_);
   const bool known =
       chain.run(recorded, outcome, [&](double Outcome::*quantity, const D& value, double unit) {
         if (put) put(quantity, value, unit);
@@ -373,12 +372,14 @@ Outcome CoulombGradients::jump(Start start, const Design& design, const Scene& s
   return outcome;
 }
 
+template class CoulombGradients<DesignDual>;
+
 GradientSolver friction::gradients(const Scene& scene, double tolerance, const Wanted& wanted,
                                    const GradientWanted&) {
   Scene to_first = scene;
   to_first.jumps = 1;
   const GradientSolver first =
-      [solver = std::make_shared<CoulombGradients>(tolerance), plain = exact(to_first, tolerance, wanted),
+      [solver = std::make_shared<CoulombGradients<>>(tolerance), plain = exact(to_first, tolerance, wanted),
        scene](std::span<const Design> designs, std::span<Outcome> outcomes, Gradients& gradients) {
         plain(designs, outcomes);
         solver->derive_solved(designs, scene, outcomes, gradients);
@@ -391,7 +392,7 @@ namespace {
 
 template <class D>
 DualJumpSolver<D> jumps_in(const Scene& scene, double tolerance) {
-  return [solver = std::make_shared<CoulombGradients>(tolerance), scene](
+  return [solver = std::make_shared<CoulombGradients<D>>(tolerance), scene](
              Start start, const Design& design, ContactState<D>& at, const PutDual<D>& put) {
     return solver->jump(start, design, scene, at, put);
   };

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <algorithm>
-#include <type_traits>
 
 #include "friction/coulomb.hpp"
 #include "noslip/dual_time.hpp"
@@ -17,6 +16,7 @@ namespace leapmap {
 /// state is that of the plain solver's end, moved along the motion to where that zero is: by -g / (dg/dt) in
 /// time, g being zero in value. Where dg/dt all but vanishes the phase is about to change, and nothing after
 /// it has a derivative. A thread's own workspace.
+template <class D = DesignDual>
 class CoulombGradients {
  public:
   /// Outcomes are CoulombSolver's at that tolerance. Derivatives are of a finer solution.
@@ -24,31 +24,21 @@ class CoulombGradients {
       : solver_(tolerance), finer_(std::min(tolerance, finest)), plain_panels_(finest) {}
 
   void solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes,
-             Gradients& gradients);
+             Gradients& gradients) requires by_design<D>;
   /// The same of designs that are solved already.
   void derive_solved(std::span<const Design> designs, const Scene& scene, std::span<const Outcome> outcomes,
-                     Gradients& gradients);
+                     Gradients& gradients) requires by_design<D>;
 
   /// One jump with derivatives, as DualJumpSolver has it.
-  template <class D>
   Outcome jump(Start start, const Design& design, const Scene& scene, ContactState<D>& at,
                const PutDual<D>& put);
 
  private:
   static constexpr double finest = 1e-12;
 
-  template <class D>
-  const SlidingPanels<D>& panels() const {
-    if constexpr (std::is_same_v<D, StateDual>)
-      return panels_by_state_;
-    else
-      return panels_;
-  }
-
   CoulombSolver<double> solver_, finer_;
   SlidingPanels<double> plain_panels_;
-  SlidingPanels<DesignDual> panels_{finest};
-  SlidingPanels<StateDual> panels_by_state_{finest};
+  SlidingPanels<D> panels_{finest};
   DualTime<DesignDual> time_;
 };
 

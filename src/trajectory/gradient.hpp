@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "hoop/flight_dual.hpp"
@@ -38,6 +39,10 @@ inline std::size_t place_of(double Design::*parameter) {
 using DesignDual = Dual<double, differentiable.size()>;
 /// A number with its derivatives by a state at a landing: angle, spin, slip and normal velocity.
 using StateDual = Dual<double, 4>;
+/// Whether a dual's derivatives are by the parameters of a design: to a StateDual these are constants, and it
+/// knows neither derivatives of times nor ways.
+template <class D>
+inline constexpr bool by_design = !std::is_same_v<D, StateDual>;
 /// As DesignDual without friction's, of one design and of as many as the machine has lanes.
 using RollingDual = Dual<double, without_slip>;
 using LanesDual = Dual<Batch, without_slip>;

@@ -42,12 +42,12 @@ void set_values(ContactState<D>& at, const ContactState<double>& known) {
 /// The first parameters of a design: constants for a StateDual.
 template <class D>
 std::array<D, without_slip> parameters_for(const Design& design) {
-  if constexpr (std::is_same_v<D, StateDual>) {
+  if constexpr (by_design<D>) {
+    return dual_parameters<D>(design);
+  } else {
     std::array<D, without_slip> parameters;
     for (std::size_t k = 0; k < parameters.size(); ++k) parameters[k] = D(design.*differentiable[k]);
     return parameters;
-  } else {
-    return dual_parameters<D>(design);
   }
 }
 
