@@ -64,6 +64,7 @@ set(LEAPMAP_SOURCES
   src/audit/audit_gait.cpp
   src/audit/audit_gradient.cpp
   src/audit/audit_report.cpp
+  src/audit/audit_samples.cpp
   src/audit/audit_sequence.cpp
   src/audit/audit_solver.cpp
   src/boundaries/boundaries.cpp
@@ -158,6 +159,7 @@ set(LEAPMAP_SOURCES
   src/spec/spec_check.cpp
   src/spec/spec_entry.cpp
   src/spec/spec_hoop.cpp
+  src/spec/spec_keys.cpp
   src/spec/spec_resolved.cpp
   src/spec/spec_scatter.cpp
   src/study/precision.cpp

@@ -195,6 +195,7 @@ std::vector<std::size_t> called_out(const FoundDesigns& found) {
 void print_found(Report& report, const FoundDesigns& found) {
   const Question& question = report.question;
   say("{} designs solved in {}\n", grouped(found.evaluations), spoken_duration(found.seconds));
+  if (!model_of(question.one.scene).slips) say("{}", never_slips);
   if (question.objectives.size() == 2 && found.reached) {
     say("front: {} designs; improving {} or {} makes the other worse", grouped(found.designs.size()),
         question.objectives[0].name, question.objectives[1].name);

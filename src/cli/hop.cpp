@@ -62,7 +62,8 @@ std::string verdict(const Motion& motion, const Spec& spec) {
                  : "It jumps at its first lift-off.";
     case Status::no_jump:
       return fmt::format("No jump within {} revolutions{}.", scene.runway,
-                         eccentricity < rounding ? ": its centre of mass is on the axis" : "");
+                         eccentricity < rounding ? ": its centre of mass is on the axis"
+                                                 : "; --runway says how far it may roll");
     case Status::stalled:
       if (scene.model == Mechanism::pendulum)
         return fmt::format(

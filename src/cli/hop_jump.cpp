@@ -75,6 +75,8 @@ void print_jump(const Spec& spec, const Outcome& jump) {
         jump.landing_tangential_speed * speed,
         with_mass(jump.landing_impulse, 4, "(m + m_p) sqrt(g R)", "N s", spec.scene),
         with_mass(jump.landing_energy_lost, 4, "(m + m_p) g R", "J", spec.scene));
+    if (jump.landing_impulse < 0.0)
+      say("An impulse below zero: to land without slip, the plane would have to pull.\n");
     if (std::isfinite(jump.max_normal_force))
       say("The plane pushes with at most {} until lift-off.\n",
           with_mass(jump.max_normal_force, 4, "(m + m_p) g", "N", spec.scene));

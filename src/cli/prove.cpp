@@ -38,9 +38,6 @@ struct ProveArguments {
   Locking locking = Locking::required;
 };
 
-constexpr std::string_view never_slips =
-    "The contact never slips in this model; a hoop that you build may.\n";
-
 void refuse_goals(const Spec& spec) {
   if (!spec.goals.empty())
     throw InputError(fmt::format("{}: goal.{} has no effect here; allowed: with [tolerances], of one design",

@@ -4,8 +4,13 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace leapmap::cli {
+
+/// A line below what the model without slip has found.
+inline constexpr std::string_view never_slips =
+    "The contact never slips in this model; a hoop that you build may.\n";
 
 /// "61,696".
 std::string grouped(std::uint64_t number);

@@ -77,7 +77,7 @@ void CoulombLanes<T>::find_pivot_zeros(std::span<const Design> designs, const Sc
     };
     const T mu_kinetic =
         gathered<T>([&](std::size_t i) { return contact_of<S>(design_of(i), scene).mu_kinetic; });
-    const PivotZeros<T> zeros = pivot_zeros(derive_gathered<T>(design_of), mu_kinetic);
+    const PivotZeros<T> zeros = pivot_zeros(gathered_designs<T>(design_of).hoop, mu_kinetic);
     for (std::size_t k = 0; k < zeros.angle.size(); ++k) {
       const auto angles = lanes_of(zeros.angle[k]), heights = lanes_of(zeros.height[k]);
       for (std::size_t i = 0; i < count; ++i)

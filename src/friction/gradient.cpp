@@ -29,7 +29,7 @@ constexpr double agreement = 1e-6;
 /// mu_static, being less than mu_kinetic, counts as much. Constants for a StateDual.
 template <class D>
 Contact<D> contact_for(const Design& design, const Scene& scene) {
-  if constexpr (!by_design<D>) {
+  if constexpr (!is_by_design<D>) {
     return contact_of<D>(design, scene);
   } else {
     const bool one = kinetic_follows(design) || design.mu_static < design.mu_kinetic;
@@ -98,7 +98,7 @@ class Chain {
   /// Takes the plain solver's values, if the chain came to the same.
   bool agrees(const ContactState<double>& there) {
     bool near = true;
-    if constexpr (!by_design<D>) at_.time = D(there.time);
+    if constexpr (!is_by_design<D>) at_.time = D(there.time);
     const auto take = [&](D& value, double number) {
       near = near && std::abs(value.value - number) <= agreement * (1.0 + std::abs(number));
       value.value = number;
@@ -122,7 +122,7 @@ class Chain {
     const D left = vis_viva_past_release(roll, D(end - at_.angle)) / contact_inertia(hoop_, trig(end));
     if (!(left > D(0.0))) return false;
     with_meter([&](auto& meter) { meter.roll(roll, at_.spin, begun.turns, end); });
-    if constexpr (by_design<D>) at_.time += time_.time(hoop_, at_.angle, at_.spin, begun.turns, end);
+    if constexpr (is_by_design<D>) at_.time += time_.time(hoop_, at_.angle, at_.spin, begun.turns, end);
     at_.travel += end - at_.angle;
     driven_ += hoop_.motor() * (end - at_.angle);
     at_.angle = end;
@@ -257,7 +257,7 @@ class Chain {
   /// Calls use(meter), if there is one.
   template <class Use>
   void with_meter(const Use& use) {
-    if constexpr (by_design<D>)
+    if constexpr (is_by_design<D>)
       if (meter_) use(*meter_);
   }
 
@@ -268,11 +268,11 @@ class Chain {
         with_derivatives(hoop_, phi, at_.spin, at_.normal, flight.apex_time, flight.flight_time);
     if (first) {
       put(&Outcome::first_jump_height, flown.height, 1.0);
-      if constexpr (by_design<D>) put(&Outcome::first_jump_time, at_.time, second_);
+      if constexpr (is_by_design<D>) put(&Outcome::first_jump_time, at_.time, second_);
     }
     if (jumps) {
       put_jump(put, at_.angle, at_.spin, at_.travel, flown, second_);
-      if constexpr (by_design<D>) put(&Outcome::jump_time, at_.time, second_);
+      if constexpr (is_by_design<D>) put(&Outcome::jump_time, at_.time, second_);
       put(&Outcome::dip,
           D(0.5) * height_above_plane(hoop_, phi, at_.spin, D(deepest(flight)), at_.normal).value, 1.0);
       put(&Outcome::energy_lost, released_ + driven_ - contact_energy(hoop_, at_), 1.0);
@@ -318,45 +318,24 @@ class Chain {
 }  // namespace
 
 template <class D>
-void CoulombGradients<D>::solve(std::span<const Design> designs, const Scene& scene,
-                                std::span<Outcome> outcomes, Gradients& gradients) requires by_design<D> {
-  for (std::size_t i = 0; i < designs.size(); ++i) outcomes[i] = solver_.solve(designs[i], scene);
-  derive_solved(designs, scene, outcomes, gradients);
-}
-
-template <class D>
-void CoulombGradients<D>::derive_solved(std::span<const Design> designs, const Scene& scene,
-                                        std::span<const Outcome> outcomes,
-                                        Gradients& gradients) requires by_design<D> {
-  gradients.begin(designs.size());
-  const std::vector<OutcomeNumber>& asked = gradients.wanted().of;
-  const bool follows_ways = std::any_of(asked.begin(), asked.end(), is_of_way);
+template <class Put>
+void CoulombJumps<D>::derive(const Design& design, const Scene& scene, const Outcome& solved,
+                             bool follows_way, const Put& put) {
   RecordedWay recorded;
-  for (std::size_t i = 0; i < designs.size(); ++i) {
-    if (outcomes[i].status == Status::failed || outcomes[i].status == Status::indeterminate ||
-        !(gradients.wanted().any_of_first_jump_in(outcomes[i]) ||
-          (follows_ways && outcomes[i].status == Status::jumped)))
-      continue;
-    ContactState<double> at = released<double>(designs[i]);
-    if (!same_flags(outcomes[i], recorded_way(finer_, Start::release, designs[i], at, scene, recorded)))
-      continue;
-    Chain<D> chain(reduce(dual_parameters<D>(designs[i]), scene), contact_for<D>(designs[i], scene),
-                   dual_release(designs[i]), time_unit(scene), panels_, plain_panels_, time_);
-    if (follows_ways) chain.follow_way();
-    chain.run(recorded, outcomes[i], [&](double Outcome::*quantity, D value, double unit) {
-      if (kinetic_follows(designs[i])) value.by[by_mu_kinetic] = std::numeric_limits<double>::quiet_NaN();
-      if (is_of_way(quantity) || std::isfinite(outcomes[i].*quantity))
-        gradients.put(quantity, i, value, unit);
-    });
-  }
+  ContactState<double> at = released<double>(design);
+  if (!same_flags(solved, recorded_way(plain_, Start::release, design, at, scene, recorded))) return;
+  Chain<D> chain(reduce(dual_parameters<D>(design), scene), contact_for<D>(design, scene),
+                 dual_release(design), time_unit(scene), panels_, plain_panels_, time_);
+  if (follows_way) chain.follow_way();
+  chain.run(recorded, solved, put);
 }
 
 template <class D>
-Outcome CoulombGradients<D>::jump(Start start, const Design& design, const Scene& scene, ContactState<D>& at,
-                                  const PutDual<D>& put) {
+Outcome CoulombJumps<D>::jump(Start start, const Design& design, const Scene& scene, ContactState<D>& at,
+                              const PutDual<D>& put) {
   RecordedWay recorded;
   ContactState<double> landed = plain(at);
-  Outcome outcome = recorded_way(finer_, start, design, landed, scene, recorded);
+  Outcome outcome = recorded_way(plain_, start, design, landed, scene, recorded);
   if (outcome.status != Status::jumped) return outcome;
   Chain<D> chain(reduce(parameters_for<D>(design), scene), contact_for<D>(design, scene), at,
                  time_unit(scene), panels_, plain_panels_, time_);
@@ -372,14 +351,37 @@ Outcome CoulombGradients<D>::jump(Start start, const Design& design, const Scene
   return outcome;
 }
 
-template class CoulombGradients<DesignDual>;
+void CoulombGradients::solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes,
+                             Gradients& gradients) {
+  for (std::size_t i = 0; i < designs.size(); ++i) outcomes[i] = solver_.solve(designs[i], scene);
+  derive_solved(designs, scene, outcomes, gradients);
+}
+
+void CoulombGradients::derive_solved(std::span<const Design> designs, const Scene& scene,
+                                     std::span<const Outcome> outcomes, Gradients& gradients) {
+  gradients.begin(designs.size());
+  const std::vector<OutcomeNumber>& asked = gradients.wanted().of;
+  const bool follows_ways = std::any_of(asked.begin(), asked.end(), is_of_way);
+  for (std::size_t i = 0; i < designs.size(); ++i) {
+    if (outcomes[i].status == Status::failed || outcomes[i].status == Status::indeterminate ||
+        !(gradients.wanted().any_of_first_jump_in(outcomes[i]) ||
+          (follows_ways && outcomes[i].status == Status::jumped)))
+      continue;
+    const auto put = [&](double Outcome::*quantity, DesignDual value, double unit) {
+      if (kinetic_follows(designs[i])) value.by[by_mu_kinetic] = std::numeric_limits<double>::quiet_NaN();
+      if (is_of_way(quantity) || std::isfinite(outcomes[i].*quantity))
+        gradients.put(quantity, i, value, unit);
+    };
+    duals_.derive(designs[i], scene, outcomes[i], follows_ways, put);
+  }
+}
 
 GradientSolver friction::gradients(const Scene& scene, double tolerance, const Wanted& wanted,
                                    const GradientWanted&) {
   Scene to_first = scene;
   to_first.jumps = 1;
   const GradientSolver first =
-      [solver = std::make_shared<CoulombGradients<>>(tolerance), plain = exact(to_first, tolerance, wanted),
+      [solver = std::make_shared<CoulombGradients>(tolerance), plain = exact(to_first, tolerance, wanted),
        scene](std::span<const Design> designs, std::span<Outcome> outcomes, Gradients& gradients) {
         plain(designs, outcomes);
         solver->derive_solved(designs, scene, outcomes, gradients);
@@ -392,7 +394,7 @@ namespace {
 
 template <class D>
 DualJumpSolver<D> jumps_in(const Scene& scene, double tolerance) {
-  return [solver = std::make_shared<CoulombGradients<D>>(tolerance), scene](
+  return [solver = std::make_shared<CoulombJumps<D>>(tolerance), scene](
              Start start, const Design& design, ContactState<D>& at, const PutDual<D>& put) {
     return solver->jump(start, design, scene, at, put);
   };

@@ -5,11 +5,13 @@
 
 #include <array>
 #include <cstddef>
+#include <type_traits>
 
 #include "leapmap/design.hpp"
 #include "leapmap/scene.hpp"
 #include "numerics/dual.hpp"
 #include "numerics/lanes.hpp"
+#include "numerics/rows.hpp"
 
 namespace leapmap {
 
@@ -138,17 +140,24 @@ Hoop<T> reduce(const Design& design, const Scene& scene) {
   return in_flight(reduce<T>(design), scene);
 }
 
+/// What matters of a design without friction.
+template <class T>
+struct GatheredDesigns {
+  Hoop<T> hoop;
+  T slope, release_angle, release_spin;
+};
 /// Of design_of(i) in lane i.
 template <class T, class F>
-Hoop<T> derive_gathered(const F& design_of) {
-  const auto parameter = [&](double Design::*member) {
-    return gathered<T>([&](std::size_t i) { return design_of(i).*member; });
-  };
-  const T resistance = gathered<T>([&](std::size_t i) { return resistance_of(design_of(i)); });
-  return resisted(
-      reduce(parameter(&Design::slope), parameter(&Design::mass_ratio), parameter(&Design::offset_ratio),
-             parameter(&Design::inertia_factor), parameter(&Design::drive_torque)),
-      resistance);
+GatheredDesigns<T> gathered_designs(const F& design_of) {
+  static_assert(std::is_standard_layout_v<Design> &&
+                offsetof(Design, resisting_torque) == 7 * sizeof(double));
+  const auto [slope, mass_ratio, offset_ratio, inertia_factor, angle, spin, torque, resisting] =
+      columns_of<T>([&](std::size_t i) { return reinterpret_cast<const double*>(&design_of(i)); });
+  T resistance(0);
+  if (any(resisting != T(0)))
+    resistance = gathered<T>([&](std::size_t i) { return resistance_of(design_of(i)); });
+  return {resisted(reduce(slope, mass_ratio, offset_ratio, inertia_factor, torque), resistance), slope, angle,
+          spin};
 }
 
 /// The same hoop in every lane.

@@ -359,26 +359,33 @@ void refuse_other_unfinished(const std::string& path, std::string_view filetype,
 bool File::finish(const std::string& path, bool replace, const std::function<void(hid_t)>& verify,
                   const std::function<void()>& committed) {
   handle_.close(bytes_->path() + ": cannot be written");
-  // HDF5 reads what it has written, while of a long file other threads, if there can be any, take the bytes
-  // to disk and add them up.
   JournaledFile& bytes = *bytes_;
+  bytes.rethrow_failure();
   const std::uint64_t size = bytes.size();
+  // While HDF5 reads a long file again, one thread syncs it and another makes its checksum, if there can be
+  // any. Whatever this finds, what was written is committed.
   const bool is_long = size >= std::uint64_t{4} << 20;
   const auto launch = is_long ? std::launch::async | std::launch::deferred : std::launch::deferred;
-  std::future<std::uint32_t> checksum = std::async(launch, [&, size] { return bytes.checksum(size); });
+  std::future<std::uint32_t> checksum;
   std::future<void> synced;
-  if (is_long) synced = std::async(launch, [&] { bytes.sync_appended(); });
   std::exception_ptr wrong;
   try {
+    if (is_long) synced = std::async(launch, [&] { bytes.sync_appended(); });
+    checksum = std::async(launch, [&, size] { return bytes.checksum(size); });
     Handle written = open_in(bytes_, Mode::verify);
     verify(written);
     written.close(bytes_->path() + ": cannot be read");
   } catch (...) {
     wrong = std::current_exception();
   }
+  bytes.forget_failure();
   bytes.resize(size);  // HDF5 moves the end as it opens a file
-  checksum.wait();
-  if (is_long) synced.get();
+  if (checksum.valid()) checksum.wait();
+  try {
+    if (synced.valid()) synced.get();
+  } catch (const std::exception& error) {
+    bytes.note_failure(error.what());
+  }
   bytes.commit();
   committed();
   if (wrong) std::rethrow_exception(wrong);

@@ -43,9 +43,9 @@ class File {
   /// Flushes and closes the file, which stays locked while this lives. Throws IoError.
   void close();
   /// Closes the file and opens it again for `verify`, which throws if what it finds is not what was written.
-  /// Commits it, which is told by `committed`, seals it and gives it its name, in place of an older file if
-  /// `replace`. Returns false if a power cut may undo the renaming (JournaledFile::rename). Throws IoError,
-  /// and, once it is committed, what verify throws: nothing is replaced then.
+  /// Commits it whatever was found, and calls `committed`. Throws what verify threw. Else seals it and gives
+  /// it its name, in place of an older file if `replace`. Returns false if a power cut may undo the renaming
+  /// (JournaledFile::rename). Throws IoError.
   [[nodiscard]] bool finish(
       const std::string& path, bool replace, const std::function<void(hid_t)>& verify,
       const std::function<void()>& committed = [] {});

@@ -153,8 +153,9 @@ void JournaledFile::write(std::uint64_t offset, std::span<const std::byte> bytes
       offset += waits.size();
     }
     if (bytes.empty()) return;
-    seal_.reset();  // it is overwritten
-    appended_ = true;
+    if (seal_) cut(descriptor_, path_, stored_);  // else its bytes might show where nobody writes
+    seal_.reset();
+    appended_ = true, synced_ = false;
     write_all(descriptor_, path_, offset, bytes);
     stored_ = std::max(stored_, offset + bytes.size());
     constexpr std::uint64_t much = std::uint64_t{8} << 20;
@@ -170,7 +171,7 @@ void JournaledFile::commit() {
     if (!appended_ && waiting_.empty() && size_ == committed_) return;  // nothing has changed
     if (committed_ == 0) return commit_first();
     // What was appended has to be there before anything refers to it.
-    if (std::exchange(appended_, false)) sync(descriptor_, path_);
+    if (std::exchange(appended_, false) && !synced_) sync(descriptor_, path_);
     if (!waiting_.empty()) {
       write_journal(descriptor_, path_, std::max(size_, stored_), size_, waiting_);
       journal_valid_ = true;
@@ -181,7 +182,14 @@ void JournaledFile::commit() {
 }
 
 void JournaledFile::sync_appended() {
-  if (!abandoned_ && std::exchange(appended_, false)) sync(descriptor_, path_);
+  if (abandoned_ || !appended_) return;
+  sync(descriptor_, path_);
+  synced_ = true;
+}
+
+void JournaledFile::forget_failure() {
+  failed_ = false;
+  failure_.clear();
 }
 
 void JournaledFile::commit_first() {

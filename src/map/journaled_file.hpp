@@ -61,8 +61,10 @@ class JournaledFile {
   /// All writes so far take effect, on disk when this returns, in a file size() bytes long. Throws IoError.
   void commit();
   /// Takes what was appended since the last commit to disk, so that the next one need not wait for it. Others
-  /// may read the file meanwhile. Throws IoError.
+  /// may read the file meanwhile. Throws IoError, which is the caller's to note.
   void sync_appended();
+  /// Forgets a failure: one of reading, which leaves what was written as it is.
+  void forget_failure();
   /// Of the first `size` bytes, as last written. Others may read the file meanwhile. Throws IoError.
   std::uint32_t checksum(std::uint64_t size) const;
   /// Ends a file whose writes are all committed with its checksum. Throws IoError.
@@ -93,7 +95,7 @@ class JournaledFile {
  private:
   void open(Locking locking);
   void lock(Locking locking) const;
-  /// Reads, and leaves failures to whoever asked.
+  /// As read, but does not remember a failure.
   void read_as_written(std::uint64_t offset, std::span<std::byte> bytes) const;
   void commit_first();
   void make_waiting_writes();
@@ -110,6 +112,7 @@ class JournaledFile {
   std::vector<WaitingWrite> waiting_;  ///< in the order they came
   std::optional<Seal> seal_;           ///< what ends the file on disk
   bool appended_ = false;              ///< since the last commit
+  bool synced_ = false;                ///< since it was appended
   bool abandoned_ = false;
   bool journal_valid_ = false;  ///< the journal on disk is whole and must not be cut off
   mutable bool failed_ = false;

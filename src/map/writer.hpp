@@ -59,7 +59,7 @@ class MapWriter {
   /// What was written so far; `seconds` is for the caller to count.
   const MapProgress& progress() const { return progress_; }
   void set_seconds(double seconds) { progress_.seconds = seconds; }
-  /// Adds closing attributes, brings everything to disk, reads it again and gives the file its name. Returns
+  /// Adds closing attributes, reads everything again, brings it to disk and gives the file its name. Returns
   /// false if a power cut may undo the latter (JournaledFile::rename). Throws BrokenFile if what is read is
   /// not what was written, IoError.
   [[nodiscard]] bool finish(std::span<const hdf5::Attribute> attributes);

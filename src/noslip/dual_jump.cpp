@@ -32,7 +32,7 @@ Outcome jump_on(Workspace& work, const Scene& scene, Start start, const Design& 
   if (!told.bounces || told.lift_offs.size() > 1) {
     // The same N at every angle, whichever way it rolls.
     const LiftOffDual<D> off = lift_off_at(begin_roll(hoop, at.angle, at.spin), told.lift_offs.back().angle);
-    if constexpr (by_design<D>)
+    if constexpr (is_by_design<D>)
       if (put)
         at.time +=
             work.time.time(hoop, at.angle, at.spin, std::span(told.turns).first(told.legs.back()), off.angle);
@@ -44,7 +44,7 @@ Outcome jump_on(Workspace& work, const Scene& scene, Start start, const Design& 
                                                 outcome.apex_time / second, outcome.flight_time / second);
   if (put) {
     put_jump(put, at.angle, at.spin, at.travel, flight, second);
-    if constexpr (by_design<D>) put(&Outcome::jump_time, at.time, second);
+    if constexpr (is_by_design<D>) put(&Outcome::jump_time, at.time, second);
     put_measures(measures_of(hoop, at.angle, at.spin, flight.flight_time), D(1.0),
                  [&](double Outcome::*kept, const D& value) { put(kept, value, 1.0); });
   }

@@ -22,21 +22,16 @@ void prepare(std::span<const Design> designs, std::span<const ContactState<Scala
     DesignLanes<T> index;
     for (std::size_t i = 0; i < index.size(); ++i)
       index[i] = static_cast<std::uint32_t>(first + (i < count ? i : 0));
-    const auto parameter = [&](double Design::*member) {
-      return gathered<T>([&](std::size_t i) { return designs[index[i]].*member; });
-    };
+    const GatheredDesigns<T> batch =
+        gathered_designs<T>([&](std::size_t i) -> const Design& { return designs[index[i]]; });
+    const Hoop<T>& hoop = batch.hoop;
     const auto of_landing = [&](S ContactState<S>::*member) {
       return gathered<T>([&](std::size_t i) { return landed[index[i]].*member; });
     };
     // Of where it sets out: of the landing, or of the release.
-    const auto start = [&](S ContactState<S>::*member, double Design::*released) {
-      return landed.empty() ? parameter(released) : of_landing(member);
-    };
-    const Hoop<T> hoop =
-        derive_gathered<T>([&](std::size_t i) -> const Design& { return designs[index[i]]; });
-    const T spin = start(&ContactState<S>::spin, &Design::release_spin);
+    const T spin = landed.empty() ? batch.release_spin : of_landing(&ContactState<S>::spin);
     // A release many turns from 0 is taken back to the first, so that angles have digits to spare.
-    const T release_angle = start(&ContactState<S>::angle, &Design::release_angle);
+    const T release_angle = landed.empty() ? batch.release_angle : of_landing(&ContactState<S>::angle);
     T nearest = release_angle;
     if (const MaskOf<T> far = abs(release_angle) > T(S(4) * pi_of<S>); any(far)) {
       const Trig<T> direction = trig(release_angle);
@@ -73,7 +68,7 @@ void prepare(std::span<const Design> designs, std::span<const ContactState<Scala
     }
     const T end = roll.release + T(S(2) * pi_of<S>) * T(S(scene.runway)) - travelled;
     begin_leg(block, index, count, roll, roll,
-              LegStart<T>{way * parameter(&Design::slope), end, force > T(0), !(end == end)});
+              LegStart<T>{way * batch.slope, end, force > T(0), !(end == end)});
   }
 }
 

@@ -38,28 +38,31 @@ void transpose(std::array<xsimd::batch<double, A>, 8>& m) {
 }
 #endif
 
-/// The rows of as many items as T has lanes, number k of all of them in column k. An item has `stride` rows.
-template <class T, std::size_t stride = 1>
-std::array<T, 8> load_rows(const Row<ScalarOf<T>>* rows, const std::uint32_t* index) {
+/// row_of(i), the first of eight numbers, for each lane of T: number k of all of them in column k.
+template <class T, class RowOf>
+std::array<T, 8> columns_of(const RowOf& row_of) {
   std::array<T, 8> columns;
 #ifdef __AVX512F__
   if constexpr (std::is_same_v<T, Batch>) {
-    for (std::size_t i = 0; i < 8; ++i) columns[i] = Batch::load_unaligned(rows[stride * index[i]].data());
+    for (std::size_t i = 0; i < 8; ++i) columns[i] = Batch::load_unaligned(row_of(i));
     transpose(columns);
     return columns;
   }
   if constexpr (std::is_same_v<T, Wide<Batch>>) {
-    const auto low = load_rows<Batch, stride>(rows, index), high = load_rows<Batch, stride>(rows, index + 8);
+    const auto low = columns_of<Batch>(row_of),
+               high = columns_of<Batch>([&](std::size_t i) { return row_of(i + 8); });
     for (std::size_t k = 0; k < 8; ++k) columns[k] = {low[k], high[k]};
     return columns;
   }
 #endif
-  std::array<ScalarOf<T>, Lanes<T>::count> lanes;
-  for (std::size_t k = 0; k < 8; ++k) {
-    for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i] = rows[stride * index[i]][k];
-    columns[k] = Lanes<T>::load(lanes.data());
-  }
+  for (std::size_t k = 0; k < 8; ++k) columns[k] = gathered<T>([&](std::size_t i) { return row_of(i)[k]; });
   return columns;
+}
+
+/// The rows of as many items as T has lanes. An item has `stride` rows.
+template <class T, std::size_t stride = 1>
+std::array<T, 8> load_rows(const Row<ScalarOf<T>>* rows, const std::uint32_t* index) {
+  return columns_of<T>([&](std::size_t i) { return rows[stride * index[i]].data(); });
 }
 
 /// The reverse, for the first `count` lanes.

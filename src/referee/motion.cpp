@@ -12,9 +12,9 @@ namespace {
 using Vector = Eigen::Matrix<double, 5, 1>;  // (x'', y'', phi'', lambda_f, lambda_n)
 using Matrix = Eigen::Matrix<double, 5, 5>;
 
-/// At an angle of that sine and cosine.
-Matrix equations(const Body& body, const Mode& mode, double s, double c) {
+Matrix equations(const Body& body, const Mode& mode, double phi) {
   const auto& [m, m_p, R, L, I, g, slope, motor, resisting, turn] = body;
+  const double s = std::sin(phi), c = std::cos(phi);
   Matrix A;
   A << m + m_p, 0, -m_p * L * c, -1, 0,                  // (7)
       0, m + m_p, m_p * L * s, 0, -1,                    // (8)
@@ -30,23 +30,6 @@ Matrix equations(const Body& body, const Mode& mode, double s, double c) {
   else
     A.row(4) << 0, 1, 0, 0, 0;  // (2), twice differentiated
   return A;
-}
-Matrix equations(const Body& body, const Mode& mode, double phi) {
-  return equations(body, mode, std::sin(phi), std::cos(phi));
-}
-
-/// Solves the equations: how the masses answer the loads alone, and by how much the contact's forces change
-/// that. Two small inverses take far less time than a decomposition of all five.
-Vector solve(const Matrix& A, const Eigen::Vector3d& loads) {
-  const Eigen::Matrix3d answer = A.topLeftCorner<3, 3>().inverse();
-  const Eigen::Vector3d alone = answer * loads;
-  const Eigen::Matrix<double, 3, 2> by_force = answer * A.topRightCorner<3, 2>();
-  const Eigen::Matrix<double, 2, 3> held = A.bottomLeftCorner<2, 3>();
-  const Eigen::Matrix2d of_forces = A.bottomRightCorner<2, 2>() - held * by_force;
-  const Eigen::Vector2d forces = of_forces.inverse() * (held * -alone);
-  Vector z;
-  z << alone - by_force * forces, forces;
-  return z;
 }
 
 }  // namespace
@@ -82,11 +65,30 @@ double resistance(const Body& body, const Mode& mode, const Motion& at) {
 Forces forces_of(const Body& body, const Mode& mode, const Motion& at) {
   const auto& [m, m_p, R, L, I, g, slope, motor, resisting, turn] = body;
   const double s = std::sin(at.phi), c = std::cos(at.phi), w2 = at.spin * at.spin;
+  const Eigen::RowVector3d along{m + m_p, 0.0, -m_p * L * c}, upwards{0.0, m + m_p, m_p * L * s},
+      turning{-m_p * L * c, m_p * L * s, I + m_p * L * L};  // of (7) to (9), by x'', y'' and phi''
   const Eigen::Vector3d loads{(m + m_p) * g * std::sin(slope) - m_p * w2 * L * s,
                               -(m + m_p) * g * std::cos(slope) - m_p * w2 * L * c,
                               motor - resistance(body, mode, at) - m_p * g * L * std::sin(slope + at.phi)};
-  const Vector z = solve(equations(body, mode, s, c), loads);
-  return {z[0], z[1], z[2], z[3], z[4]};
+  // By (7) lambda_f is along z - loads[0], by (8) lambda_n is upwards z - loads[1]. Three equations are left,
+  // which take a third of the time of all five.
+  Eigen::Matrix3d A;
+  Eigen::Vector3d right = loads;
+  if (mode.kind == Mode::rolls) {
+    A << turning + R * along, 1.0, 0.0, -R, 0.0, 1.0, 0.0;  // (9), (1), (2)
+    right << loads[2] + R * loads[0], 0.0, 0.0;
+  } else if (mode.kind == Mode::slides) {
+    A << along - mode.drag * upwards, turning + R * mode.drag * upwards, 0.0, 1.0, 0.0;  // (7), (9), (2)
+    right << loads[0] - mode.drag * loads[1], loads[2] + R * mode.drag * loads[1], 0.0;
+  } else {
+    A << along, upwards, turning;
+  }
+  const Eigen::Vector3d z = A.inverse() * right;
+  Forces forces{z[0], z[1], z[2], 0.0, 0.0};
+  if (mode.kind == Mode::rolls || mode.kind == Mode::slides) forces.normal = upwards * z - loads[1];
+  if (mode.kind == Mode::rolls) forces.friction = along * z - loads[0];
+  if (mode.kind == Mode::slides) forces.friction = mode.drag * forces.normal;
+  return forces;
 }
 
 bool rests(const Body& body, const Motion& at) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// The paper's hoop as its Lagrangian has it, in SI units: (7) to (9) in its three coordinates, held on the
-/// plane by two multipliers. Nothing is reduced, scaled or solved in advance, and nothing is shared with
-/// hoop/: what agrees with this agrees with the paper.
+/// plane by two multipliers. Nothing is reduced or scaled, nothing is solved in advance but (7) and (8) for
+/// the multipliers, and nothing is shared with hoop/: what agrees with this agrees with the paper.
 #pragma once
 
 #include <cmath>

@@ -146,7 +146,7 @@ double number_in_own_unit(std::string_view text, std::string_view own, const Sca
   if (parts.unit.empty() || parts.unit == own) return parts.number;
   if (own == "rad" && parts.unit == "deg") return parts.number * degrees(1.0);  // as ever, to the last bit
   const OwnUnit* known = find_own_unit(own);
-  if (!known) throw InputError(fmt::format("'{}' is not a number without a unit", text));
+  if (!known) throw InputError(fmt::format("'{}' has a unit, and this number has none", text));
   const double size = size_in_si(text, parts.unit, *known);
   const double ours = known->size(scales);
   if (std::isnan(ours))

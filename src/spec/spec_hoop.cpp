@@ -97,7 +97,7 @@ void check_axis(const Spec& spec, const Axis& axis) {
   if (!find_body_number(axis.key)) return;
   if (!spec.hoop)
     throw InputError(
-        fmt::format("{}: {}: there is no [hoop]; allowed: with [hoop] in the spec, which gives the rest",
+        fmt::format("{}: {}: there is no [hoop]; allowed: with [hoop] in the spec, as in sweeps/drawing.toml",
                     origin_of(spec), axis.key));
   const auto variable = find_variable(axis.key, &*spec.hoop);
   if (!variable) check_hoop_key(*spec.hoop, axis.key, origin_of(spec));

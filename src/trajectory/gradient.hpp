@@ -39,10 +39,10 @@ inline std::size_t place_of(double Design::*parameter) {
 using DesignDual = Dual<double, differentiable.size()>;
 /// A number with its derivatives by a state at a landing: angle, spin, slip and normal velocity.
 using StateDual = Dual<double, 4>;
-/// Whether a dual's derivatives are by the parameters of a design: to a StateDual these are constants, and it
-/// knows neither derivatives of times nor ways.
+/// Whether a dual's derivatives are by the parameters of a design. To a StateDual these are constants, and it
+/// knows derivatives of neither times nor ways.
 template <class D>
-inline constexpr bool by_design = !std::is_same_v<D, StateDual>;
+inline constexpr bool is_by_design = !std::is_same_v<D, StateDual>;
 /// As DesignDual without friction's, of one design and of as many as the machine has lanes.
 using RollingDual = Dual<double, without_slip>;
 using LanesDual = Dual<Batch, without_slip>;

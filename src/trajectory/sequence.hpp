@@ -99,7 +99,8 @@ class Sequences {
   void solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes) {
     states_.clear(), last_.resize(designs.size());
     for (const Design& design : designs) states_.push_back(released<S>(design));
-    for (Outcome& outcome : outcomes) outcome.status = Status::no_jump;  // what tells that it has none yet
+    // All else is overwritten; the room for later jumps stays.
+    for (Outcome& outcome : outcomes) outcome.status = Status::not_computed;
     jumps_(Start::release, designs, states_, last_,
            [&](std::size_t i) { return goes_on(scene, states_[i], last_[i], outcomes[i]); });
     for (std::size_t i = 0; i < designs.size(); ++i) {

@@ -5,7 +5,6 @@
 #include <functional>
 #include <memory>
 #include <span>
-#include <type_traits>
 #include <vector>
 
 #include "trajectory/gradient.hpp"
@@ -42,7 +41,7 @@ void set_values(ContactState<D>& at, const ContactState<double>& known) {
 /// The first parameters of a design: constants for a StateDual.
 template <class D>
 std::array<D, without_slip> parameters_for(const Design& design) {
-  if constexpr (by_design<D>) {
+  if constexpr (is_by_design<D>) {
     return dual_parameters<D>(design);
   } else {
     std::array<D, without_slip> parameters;

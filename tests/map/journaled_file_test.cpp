@@ -70,6 +70,7 @@ std::vector<Bytes> write_rounds(const std::string& path, unsigned seed) {
     put(model, 0, stamp);
     if (round == 3) model.resize(model.size() - model.size() / 4);  // HDF5 gives space back now and then
     file.resize(model.size());
+    if (round % 2 == 1) file.sync_appended();
     file.commit();
     states.push_back(model);
     EXPECT_EQ(content_of(file, model.size()), model);
@@ -275,6 +276,25 @@ TEST(JournaledFile, IsSealedWithAChecksumThatEveryChangedBitBreaks) {
     file.commit();
   }
   EXPECT_EQ(bytes_of(folder / "file").size(), states.back().size() + 3) << "a change takes the seal away";
+}
+
+TEST(JournaledFile, IsSealedAgainAfterItGrewByBytesThatNobodyWrote) {
+  const testing::TemporaryFolder folder;
+  const auto states = write_rounds(folder / "file", 2);
+  {
+    JournaledFile file(folder / "file", Access::change);
+    file.seal(file.checksum(file.size()));
+  }
+  {
+    JournaledFile file(folder / "file", Access::change);
+    const std::uint64_t end = file.end();
+    file.write(end + 9, Bytes(1, std::byte{9}));  // the seal's bytes were there
+    file.resize(end + 10);
+    const std::uint32_t checksum = file.checksum(file.size());
+    file.commit();
+    file.seal(checksum);
+  }
+  EXPECT_EQ(JournaledFile(folder / "file", Access::read).seal_holds(), true);
 }
 
 TEST(JournaledFile, RenamesItselfAndNobodyElse) {

@@ -2,13 +2,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <optional>
 
 #include "leapmap/errors.hpp"
+#include "map/hdf5_driver.hpp"
 #include "map/reader.hpp"
 #include "map/writer.hpp"
 #include "support/small_map.hpp"
+#include "support/system_calls.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace leapmap {
@@ -91,6 +94,91 @@ TEST(MapFile, AWholeMapThatCannotBeGivenItsNameIsKeptAsItsPart) {
   }
   EXPECT_EQ(fs::file_size(folder / "map.h5"), 22u);
   EXPECT_TRUE(MapReader(folder / "map.h5.part").is_whole());
+}
+
+/// Of two tiles, stored as they are: so long that it is verified while it goes to disk.
+struct LongMap {
+  static constexpr std::size_t each = 12'000;
+  Tiling tiling{{2, each}, {1, each}};
+  MapLayout layout = small_layout();
+
+  LongMap() {
+    layout.axes[0].values = {0.1, 0.2};
+    layout.axes[1].values.resize(each);
+    for (std::size_t i = 0; i < each; ++i) layout.axes[1].values[i] = static_cast<double>(i + 1);
+    layout.compression = 0;
+  }
+  /// Commits after each tile but the last.
+  MapWriter written(const std::string& path) const {
+    MapWriter writer = MapWriter::begin(path, layout, tiling, small_attributes, true);
+    writer.write(testing::numbered_tile(layout, tiling, 0));
+    writer.commit();
+    writer.write(testing::numbered_tile(layout, tiling, 1));
+    return writer;
+  }
+};
+
+TEST(MapFile, ALongMapIsSealedAsItIsOnDisk) {
+  const testing::TemporaryFolder folder;
+  const LongMap map;
+  EXPECT_TRUE(map.written(folder / "map.h5").finish({}));
+  EXPECT_GT(fs::file_size(folder / "map.h5"), std::uintmax_t{4} << 20);
+  EXPECT_EQ(JournaledFile(folder / "map.h5", JournaledFile::Access::read).seal_holds(), true);
+  EXPECT_EQ(MapReader(folder / "map.h5").read("jump_time", map.tiling.tile(1))[7], map.each + 7.0);
+}
+
+TEST(MapFile, ALongMapThatCannotBeSyncedIsLeftAsOfItsLastCommit) {
+  const testing::TemporaryFolder folder;
+  const LongMap map;
+  {
+    MapWriter writer = map.written(folder / "map.h5");
+    testing::before_system_call = [](const testing::SystemCall& call) {
+      if (call.kind == testing::SystemCall::Kind::sync) throw IoError("the disk is gone");
+    };
+    EXPECT_THROW(static_cast<void>(writer.finish({})), IoError);
+    testing::before_system_call = nullptr;
+    EXPECT_EQ(writer.committed(), map.each);
+  }
+  EXPECT_FALSE(fs::exists(folder / "map.h5"));
+  EXPECT_EQ(MapReader(folder / "map.h5.part").attribute("tiles_done"), "1");
+}
+
+TEST(MapFile, ALongMapKilledAtAnyMomentIsWholeOrGoneOnWith) {
+  const testing::TemporaryFolder folder;
+  const LongMap map;
+  const std::string path = folder / "map.h5";
+  const long stride = std::getenv("LEAPMAP_EVERY_CALL") ? 1 : 17;
+  const auto whole = [&] { static_cast<void>(map.written(path).finish({})); };
+  std::size_t resumed = 0;
+  for (long call = 0; testing::dies_at_call(call, whole); call += stride) {
+    if (fs::exists(path)) {
+      fs::remove(path);
+    } else if (fs::exists(path + ".part") && !hdf5::File::blank(path + ".part")) {
+      MapWriter writer = MapWriter::resume(path, map.layout, map.tiling, false);
+      EXPECT_NO_THROW(writer.verify()) << "call " << call;
+      ++resumed;
+    }
+    fs::remove(path + ".part");
+  }
+  EXPECT_GT(resumed, 0u);
+}
+
+TEST(MapFile, AFileWhoseVerificationFailsIsCommittedAllTheSame) {
+  const testing::TemporaryFolder folder;
+  const std::string path = folder / "file.h5", part = path + ".part";
+  bool committed = false;
+  {
+    hdf5::File file = hdf5::File::create(part, "leapmap map");
+    hdf5::annotate(file, small_attributes);
+    const auto verify = [&](hid_t) {
+      file.bytes().note_failure("a read fails");
+      throw IoError("a tile cannot be read");
+    };
+    EXPECT_THROW(static_cast<void>(file.finish(path, false, verify, [&] { committed = true; })), IoError);
+  }
+  EXPECT_TRUE(committed);
+  EXPECT_FALSE(fs::exists(path));
+  EXPECT_EQ(hdf5::read_text(hdf5::File::open(part), "title"), "täst");
 }
 
 TEST(MapFile, AKeptPartShowsItsHolesAsNotComputed) {

@@ -258,6 +258,32 @@ TEST(Sequences, AreThoseOfIntegrationAsFarAsTheirConditionAllows) {
   }
 }
 
+TEST(Sequences, OutcomesOfAnEarlierCallLeaveNothingBehind) {
+  Outcome stale;
+  stale.status = Status::jumped, stale.candidates = 7, stale.gait_period = 7;
+  for (const Field& field : map_fields())
+    if (const auto* quantity = std::get_if<Quantity>(&field.source)) stale.*quantity->member = 7.0;
+  stale.later_jumps.resize(5);
+  for (const Friction friction : {Friction::sticking, Friction::coulomb}) {
+    const Scene scene = sequence_scene(friction, 4);
+    const std::vector<Design> designs = lively_designs(60, 3, friction);
+    std::vector<Outcome> fresh(designs.size()), used(designs.size(), stale);
+    solve_into(fresh, designs, scene);
+    solve_into(used, designs, scene);
+    for (std::size_t i = 0; i < designs.size(); ++i) {
+      EXPECT_TRUE(same_flags(used[i], fresh[i])) << i;
+      EXPECT_EQ(used[i].sequence_end, fresh[i].sequence_end) << i;
+      EXPECT_EQ(used[i].gait_period, fresh[i].gait_period) << i;
+      for (const Field& field : map_fields())
+        if (const auto* quantity = std::get_if<Quantity>(&field.source)) {
+          const double a = used[i].*quantity->member, b = fresh[i].*quantity->member;
+          EXPECT_TRUE(a == b || (std::isnan(a) && std::isnan(b))) << i << " " << field.name;
+        }
+      EXPECT_EQ(used[i].later_jumps.size(), fresh[i].later_jumps.size()) << i;
+    }
+  }
+}
+
 TEST(Sequences, DoNotDependOnWhatIsStored) {
   Spec spec;
   spec.scene = sequence_scene(Friction::sticking, 4);

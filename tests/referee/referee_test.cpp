@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -87,6 +89,60 @@ Motion any_motion(std::mt19937_64& random, const Body& body) {
           uniform(random, -2.0, 2.0),
           uniform(random, -2.0, 0.0),
           uniform(random, -20.0, 20.0)};
+}
+
+/// (7) to (9) and the mode's two equations with both multipliers, row by row, and their right sides.
+Eigen::Vector<long double, 5> all_at_once(const Body& body, const Mode& mode, const Motion& at) {
+  using Number = long double;
+  const Number m = body.m, m_p = body.m_p, R = body.R, L = body.L, g = body.g, M = m + m_p,
+               s = std::sin(Number(at.phi)), c = std::cos(Number(at.phi)), w2 = Number(at.spin) * at.spin;
+  Eigen::Matrix<Number, 5, 5> A = Eigen::Matrix<Number, 5, 5>::Zero();
+  A.row(0) << M, 0, -m_p * L * c, -1, 0;
+  A.row(1) << 0, M, m_p * L * s, 0, -1;
+  A.row(2) << -m_p * L * c, m_p * L * s, body.I + m_p * L * L, R, 0;
+  const bool is_free = mode.kind == Mode::flies || mode.kind == Mode::unheld;
+  A(3, mode.kind == Mode::rolls ? 0 : 3) = 1;
+  if (mode.kind == Mode::rolls) A(3, 2) = -R;
+  if (mode.kind == Mode::slides) A(3, 4) = -mode.drag;
+  A(4, is_free ? 4 : 1) = 1;
+  Eigen::Vector<Number, 5> b = Eigen::Vector<Number, 5>::Zero();
+  b[0] = M * g * std::sin(Number(body.slope)) - m_p * w2 * L * s;
+  b[1] = -M * g * std::cos(Number(body.slope)) - m_p * w2 * L * c;
+  b[2] = body.motor - m_p * g * L * std::sin(Number(body.slope) + at.phi);
+  return A.fullPivLu().solve(b);
+}
+
+TEST(Referee, ItsForcesSolveItsEquationsWhateverTheMasses) {
+  std::mt19937_64 random(5);
+  for (const Mode::Kind kind : {Mode::rolls, Mode::slides, Mode::flies, Mode::unheld})
+    for (const double inertia : {0.0, 1e-9, 1e-3, 1.0})
+      for (const double offset : {1e-3, 0.3, 1.0})
+        for (const double mass : {1e-3, 1.0, 1e3}) {
+          const bool is_free = kind == Mode::flies || kind == Mode::unheld;
+          if (is_free && inertia < 1e-3) continue;  // next to nothing turns there
+          for (int k = 0; k < 20; ++k) {
+            Body body{};
+            body.m = 1.0, body.m_p = mass, body.R = 1.0, body.L = offset, body.I = inertia, body.g = 1.0;
+            body.slope = 0.4, body.motor = 0.3 * body.mass();
+            const Mode mode{kind, uniform(random, -0.4, 0.4)};
+            Motion at{};
+            at.phi = uniform(random, -4.0, 4.0), at.spin = uniform(random, -2.0, 2.0);
+            const Forces told = forces_of(body, mode, at);
+            const Eigen::Vector<long double, 5> right = all_at_once(body, mode, at);
+            const std::array<double, 5> numbers{told.x, told.y, told.phi, told.friction, told.normal};
+            // Roundings of the largest of them, times how much masses and lengths of several magnitudes, and
+            // a slide next to Painleve's edge, amplify them: up to 1e4.
+            const double size = 1.0 + static_cast<double>(right.lpNorm<Eigen::Infinity>());
+            for (std::size_t i = 0; i < numbers.size(); ++i)
+              EXPECT_NEAR(numbers[i], static_cast<double>(right[static_cast<Eigen::Index>(i)]), 1e-11 * size)
+                  << "mode " << kind << " I " << inertia << " L " << offset << " m_p " << mass << " " << i;
+          }
+        }
+}
+
+TEST(Referee, SolvesAHoopWithoutInertiaOrMass) {
+  Referee referee(Scene{}, 1e-13);
+  EXPECT_EQ(referee.solve({.mass_ratio = 0.0, .inertia_factor = 0.0}).status, Status::no_jump);
 }
 
 TEST(Referee, ItsForcesDoNoWorkThatItsEnergyDoesNotShow) {

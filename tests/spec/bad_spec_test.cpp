@@ -49,6 +49,9 @@ INSTANTIATE_TEST_SUITE_P(
     Kinds, BadSpecs,
     ::testing::Values(
         BadSpec{"not_toml", "[design\nslope = 1", {"spec.toml:1", "not TOML"}},
+        BadSpec{"unit_without_quotes",
+                "[design]\nslope = 12 deg",
+                {"spec.toml:2", "not TOML", "needs quotes: \"12 deg\""}},
         BadSpec{"unknown_key",
                 "[design]\nslop = 0.4",
                 {"spec.toml:2", "design.slop", "unknown key", "allowed", "slope"}},
@@ -159,7 +162,8 @@ TEST(BadOverrides, AreRefusedLikeBadKeys) {
   for (const auto& [text, word] :
        {std::pair{"slope", "KEY=VALUE"}, std::pair{"slop=1", "unknown key"},
         std::pair{"scene.slope=1", "unknown key"}, std::pair{"slope=91deg", "90 deg"},
-        std::pair{"slope={from=1", "not TOML"}, std::pair{"slope=", "number"}}) {
+        std::pair{"slope={from=1", "not TOML"}, std::pair{"slope={from=5 deg}", "needs quotes"},
+        std::pair{"slope=", "number"}}) {
     const std::string line = refusal("", {text});
     EXPECT_NE(line.find(word), std::string::npos) << text << ": " << line;
     EXPECT_EQ(line.find('\n'), std::string::npos) << line;

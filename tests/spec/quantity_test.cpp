@@ -81,7 +81,7 @@ TEST(Quantities, OfAnotherKindOrOfNoneAreRefused) {
     EXPECT_NE(refusal(text, own).find("'"), std::string::npos) << refusal(text, own);
   EXPECT_EQ(refusal("60 s", "m"), "'60 s' cannot be converted to m");
   EXPECT_EQ(refusal("50 Hz", "sqrt(g/R)"), "'50 Hz' cannot be converted to rad s-1");
-  EXPECT_EQ(refusal("3 m", "1"), "'3 m' is not a number without a unit");
+  EXPECT_EQ(refusal("3 m", "1"), "'3 m' has a unit, and this number has none");
   for (const char* text : {"1 200 mm", "1.5.2 mm", "6 mm 10", "3 1e3mm", "2 m/2", "2 3", "2 1/m", "5 mm -3"})
     EXPECT_NE(refusal(text, "m").find("is unknown"), std::string::npos) << text;
   EXPECT_NE(refusal(std::string("5 mm\0m", 7), "m").find("is unknown"), std::string::npos);
