@@ -146,7 +146,7 @@ struct GatheredDesigns {
   Hoop<T> hoop;
   T slope, release_angle, release_spin;
 };
-/// Of design_of(i) in lane i.
+/// Of design_of(i) in lane i. What it reads are the first eight members of Design.
 template <class T, class F>
 GatheredDesigns<T> gathered_designs(const F& design_of) {
   static_assert(std::is_standard_layout_v<Design> &&

@@ -38,7 +38,7 @@ void transpose(std::array<xsimd::batch<double, A>, 8>& m) {
 }
 #endif
 
-/// row_of(i), the first of eight numbers, for each lane of T: number k of all of them in column k.
+/// row_of(i) points to eight numbers for lane i of T. Column k has number k of every lane.
 template <class T, class RowOf>
 std::array<T, 8> columns_of(const RowOf& row_of) {
   std::array<T, 8> columns;
