@@ -8,7 +8,7 @@
 
 namespace leapmap::cli {
 
-/// A line below what the model without slip has found.
+/// Goes with results of the model without slip.
 inline constexpr std::string_view never_slips =
     "The contact never slips in this model; a hoop that you build may.\n";
 

@@ -153,7 +153,7 @@ void JournaledFile::write(std::uint64_t offset, std::span<const std::byte> bytes
       offset += waits.size();
     }
     if (bytes.empty()) return;
-    if (seal_) cut(descriptor_, path_, stored_);  // else its bytes might show where nobody writes
+    if (seal_) cut(descriptor_, path_, stored_);  // its bytes are no content where the file grows
     seal_.reset();
     appended_ = true, synced_ = false;
     write_all(descriptor_, path_, offset, bytes);

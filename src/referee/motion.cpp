@@ -71,7 +71,7 @@ Forces forces_of(const Body& body, const Mode& mode, const Motion& at) {
                               -(m + m_p) * g * std::cos(slope) - m_p * w2 * L * c,
                               motor - resistance(body, mode, at) - m_p * g * L * std::sin(slope + at.phi)};
   // By (7) lambda_f is along z - loads[0], by (8) lambda_n is upwards z - loads[1]. Three equations are left,
-  // which take a third of the time of all five.
+  // which take far less time than all five.
   Eigen::Matrix3d A;
   Eigen::Vector3d right = loads;
   if (mode.kind == Mode::rolls) {

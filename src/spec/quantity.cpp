@@ -85,7 +85,8 @@ std::optional<double> in_si(std::string_view unit, const char* si) {
   return std::isfinite(size) && size > 0.0 ? std::optional(size) : std::nullopt;
 }
 
-/// How many characters of the text are a number: sign, digits, point, digits, exponent.
+}  // namespace
+
 std::size_t length_of_number(std::string_view text) {
   std::size_t at = 0;
   const auto skip = [&](std::string_view any, std::size_t most) {
@@ -105,6 +106,8 @@ std::size_t length_of_number(std::string_view text) {
   }
   return mantissa;
 }
+
+namespace {
 
 struct Parts {
   double number;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "leapmap/errors.hpp"
+#include "spec/quantity.hpp"
 #include "spec/spec_hoop.hpp"
 #include "support/closest.hpp"
 #include "support/number.hpp"
@@ -87,12 +88,13 @@ std::vector<Entry> entries_of(const toml::table& file, const std::string& origin
 }
 
 std::string_view hint_of_quotes(std::string_view text) {
-  constexpr std::string_view blanks = " \t", of_numbers = "+-.0123456789eE";
-  for (std::size_t at = text.find('='); at != std::string_view::npos; at = text.find('=', at + 1)) {
-    const std::size_t number = std::min(text.find_first_not_of(blanks, at + 1), text.size()),
-                      end = std::min(text.find_first_not_of(of_numbers, number), text.size()),
-                      unit = std::min(text.find_first_not_of(blanks, end), text.size());
-    if (end > number && unit < text.size() && std::isalpha(static_cast<unsigned char>(text[unit])) != 0)
+  const auto skip = [&](std::size_t characters) { text.remove_prefix(std::min(characters, text.size())); };
+  const auto skip_blanks = [&] { skip(text.find_first_not_of(" \t")); };
+  for (std::size_t sign = text.find('='); sign != std::string_view::npos; sign = text.find('=')) {
+    skip(sign + 1), skip_blanks();
+    const std::size_t number = length_of_number(text);
+    skip(number), skip_blanks();
+    if (number > 0 && !text.empty() && std::isalpha(static_cast<unsigned char>(text[0])) != 0)
       return "; a number with a unit needs quotes: \"12 deg\"";
   }
   return "";

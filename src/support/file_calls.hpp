@@ -29,7 +29,7 @@ void begin_to_sync(int descriptor, std::uint64_t offset, std::uint64_t bytes);
 void sync(int descriptor, const std::string& path);
 /// CRC-32 of the bytes from begin to end.
 std::uint32_t checksum_of(int descriptor, const std::string& path, std::uint64_t begin, std::uint64_t end);
-/// The same of bytes that `read` tells, those from an offset on.
+/// The same of bytes that read(offset, bytes) fills in.
 std::uint32_t checksum_of(std::uint64_t begin, std::uint64_t end,
                           const std::function<void(std::uint64_t, std::span<std::byte>)>& read);
 

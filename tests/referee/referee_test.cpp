@@ -127,9 +127,10 @@ TEST(Referee, ItsForcesSolveItsEquationsWhateverTheMasses) {
             const Mode mode{kind, uniform(random, -0.4, 0.4)};
             Motion at{};
             at.phi = uniform(random, -4.0, 4.0), at.spin = uniform(random, -2.0, 2.0);
-            const Forces told = forces_of(body, mode, at);
+            const Forces forces = forces_of(body, mode, at);
             const Eigen::Vector<long double, 5> right = all_at_once(body, mode, at);
-            const std::array<double, 5> numbers{told.x, told.y, told.phi, told.friction, told.normal};
+            const std::array<double, 5> numbers{forces.x, forces.y, forces.phi, forces.friction,
+                                                forces.normal};
             // Roundings of the largest of them, times how much masses and lengths of several magnitudes, and
             // a slide next to Painleve's edge, amplify them: up to 1e4.
             const double size = 1.0 + static_cast<double>(right.lpNorm<Eigen::Infinity>());

@@ -49,6 +49,7 @@ INSTANTIATE_TEST_SUITE_P(
     Kinds, BadSpecs,
     ::testing::Values(
         BadSpec{"not_toml", "[design\nslope = 1", {"spec.toml:1", "not TOML"}},
+        BadSpec{"word_without_quotes", "[numerics]\nmethod = exact", {"spec.toml:2", "not TOML"}},
         BadSpec{"unit_without_quotes",
                 "[design]\nslope = 12 deg",
                 {"spec.toml:2", "not TOML", "needs quotes: \"12 deg\""}},
@@ -168,6 +169,10 @@ TEST(BadOverrides, AreRefusedLikeBadKeys) {
     EXPECT_NE(line.find(word), std::string::npos) << text << ": " << line;
     EXPECT_EQ(line.find('\n'), std::string::npos) << line;
   }
+}
+
+TEST(BadSpecFile, NoHintOfAUnitIsGivenWhereAWordLacksItsQuotes) {
+  EXPECT_EQ(refusal("[numerics]\nmethod = exact").find("needs quotes"), std::string::npos);
 }
 
 TEST(BadSpecFile, AMissingSpecIsRefused) {
