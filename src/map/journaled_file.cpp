@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -158,16 +159,30 @@ void JournaledFile::write(std::uint64_t offset, std::span<const std::byte> bytes
     appended_ = true, synced_ = false;
     write_all(descriptor_, path_, offset, bytes);
     stored_ = std::max(stored_, offset + bytes.size());
-    constexpr std::uint64_t much = std::uint64_t{8} << 20;
-    if (stored_ < sync_begun_ + much) return;
-    const std::uint64_t begun = std::exchange(sync_begun_, stored_);
-    begin_to_sync(descriptor_, begun, stored_ - begun);
+    constexpr std::uint64_t much = std::uint64_t{4} << 20;
+    if (stored_ >= sync_begun_ + much) begin_to_sync();
   });
+}
+
+void JournaledFile::begin_to_sync() {
+  if (syncing_.valid()) {
+    // Of a slow disk: later, and more at once.
+    if (syncing_.wait_for(std::chrono::seconds(0)) == std::future_status::timeout) return;
+    end_sync();
+  }
+  sync_begun_ = stored_;
+  syncing_ = std::async(std::launch::async | std::launch::deferred,
+                        [descriptor = descriptor_, path = path_] { sync(descriptor, path); });
+}
+
+void JournaledFile::end_sync() {
+  if (syncing_.valid()) syncing_.get();
 }
 
 void JournaledFile::commit() {
   if (abandoned_) return;
   attempt([&] {
+    end_sync();
     if (!appended_ && waiting_.empty() && size_ == committed_) return;  // nothing has changed
     if (committed_ == 0) return commit_first();
     // What was appended has to be there before anything refers to it.
@@ -183,6 +198,7 @@ void JournaledFile::commit() {
 
 void JournaledFile::sync_appended() {
   if (abandoned_ || !appended_) return;
+  end_sync();
   sync(descriptor_, path_);
   synced_ = true;
 }
@@ -233,6 +249,7 @@ void JournaledFile::make_waiting_writes() {
 void JournaledFile::abandon() {
   if (abandoned_ || access_ == Access::read) return;
   abandoned_ = true;
+  if (syncing_.valid()) syncing_.wait();
   // Gives the space back; if it cannot, what lies beyond the committed end is ignored all the same.
   if (!journal_valid_ && !seal_)
     static_cast<void>(::ftruncate(descriptor_, static_cast<off_t>(committed_)) != 0);

@@ -15,6 +15,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <future>
 #include <optional>
 #include <span>
 #include <string>
@@ -99,6 +100,10 @@ class JournaledFile {
   void read_as_written(std::uint64_t offset, std::span<std::byte> bytes) const;
   void commit_first();
   void make_waiting_writes();
+  /// A thread brings to disk what was written so far, so that a commit has less to wait for.
+  void begin_to_sync();
+  /// Waits for that. Throws IoError if it failed: the system tells of that but once.
+  void end_sync();
   /// Whether a write would change anything: HDF5 writes the same head again as it closes a file.
   bool differs(std::uint64_t offset, std::span<const std::byte> bytes) const;
 
@@ -109,6 +114,7 @@ class JournaledFile {
   std::uint64_t stored_ = 0;           ///< bytes the file has on disk, a journal not counted
   std::uint64_t size_ = 0;             ///< bytes it is to have after the next commit
   std::uint64_t sync_begun_ = 0;       ///< bytes that are on their way to disk, if not there
+  std::future<void> syncing_;          ///< brings them there
   std::vector<WaitingWrite> waiting_;  ///< in the order they came
   std::optional<Seal> seal_;           ///< what ends the file on disk
   bool appended_ = false;              ///< since the last commit

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "support/file_calls.hpp"
 
-#include <fcntl.h>
 #include <libdeflate.h>
 #include <unistd.h>
 
@@ -54,14 +53,6 @@ void write_stream(int descriptor, const std::string& path, std::string_view text
 void cut(int descriptor, const std::string& path, std::uint64_t size) {
   if (uninterrupted([&] { return ::ftruncate(descriptor, static_cast<off_t>(size)); }) != 0)
     fail_with_errno(path, "cannot be written");
-}
-
-void begin_to_sync(int descriptor, std::uint64_t offset, std::uint64_t bytes) {
-#ifdef SYNC_FILE_RANGE_WRITE
-  // If it fails, the sync does all of the work and reports the failure.
-  static_cast<void>(::sync_file_range(descriptor, static_cast<off_t>(offset), static_cast<off_t>(bytes),
-                                      SYNC_FILE_RANGE_WRITE) != 0);
-#endif
 }
 
 void sync(int descriptor, const std::string& path) {

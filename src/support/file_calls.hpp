@@ -23,8 +23,6 @@ void write_all(int descriptor, const std::string& path, std::uint64_t offset,
 void write_stream(int descriptor, const std::string& path, std::string_view text);
 /// Makes the file `size` bytes long.
 void cut(int descriptor, const std::string& path, std::uint64_t size);
-/// Asks the system to begin to bring some bytes to disk, so that a sync to come has less to wait for.
-void begin_to_sync(int descriptor, std::uint64_t offset, std::uint64_t bytes);
 /// Returns once what was written is on disk.
 void sync(int descriptor, const std::string& path);
 /// CRC-32 of the bytes from begin to end.
