@@ -29,6 +29,14 @@ std::size_t piece_of(const Request& request) {
   return std::clamp<std::size_t>(most_hoops / static_cast<std::size_t>(request.scatter.samples), 1, most);
 }
 
+/// The same of a tile. Hoops made after a row of drawings are interpolated: rows are whole where they fit.
+std::size_t piece_of(const Request& request, const Tiling& tiling) {
+  const std::size_t most = std::min(piece_of(request), tiling.largest_tile()),
+                    row = tiling.tile_shape().back();
+  const bool in_rows = wants_samples(request) && can_be_interpolated(request) && row <= most;
+  return in_rows ? most - most % row : most;
+}
+
 struct Item {
   Prepared prepared;
   std::size_t designs;
@@ -104,7 +112,7 @@ std::size_t run_sweep(const Spec& spec, const Request& request, const Tiling& ti
       },
       most_waiting_bytes(thread_count(options.threads)), tiles);
 
-  const std::size_t piece = std::min(piece_of(request), tiling.largest_tile());
+  const std::size_t piece = piece_of(request, tiling);
   const auto points = points_of(request.scatter);
   const bool scattered = wants_samples(request), needs_bodies = scattered || derives_by_body(request);
   parallel_for_each(tiles, thread_count(options.threads), options.stop_requested, [&] {
