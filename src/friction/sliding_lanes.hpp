@@ -83,8 +83,9 @@ class SlidingLanes {
   Rest rest(const typename Panels::Stretch& stretch, const Panel& panel, const MaskOf<T>& asked) const;
   /// What the panels say, once they are solved.
   struct Seen {
-    MaskOf<T> is_steep;     ///< it comes too near to Painleve's edge
-    MaskOf<T> solved;       ///< to the tolerance; where it is the last one, as well as it goes
+    MaskOf<T> is_steep;  ///< it comes too near to Painleve's edge
+    /// To the tolerance; where it is the last one, as well as it goes; where nothing comes, its end alone.
+    MaskOf<T> solved;
     MaskOf<T> done;         ///< the slide has ended, at the panel's end
     MaskOf<T> goes_on;      ///< nothing ends the slide on this panel
     MaskOf<T> ends_inside;  ///< the first of `events` ends it, at `inside`

@@ -11,7 +11,7 @@ namespace leapmap {
 /// How long the panels of a slide may be.
 namespace panel_lengths {
 
-inline constexpr double longest_angle = 2.0, first_angle = 1.2;  ///< of a panel by angle [rad]
+inline constexpr double longest_angle = 2.5, first_angle = 1.2;  ///< of a panel by angle [rad]
 inline constexpr double shortest_angle = 1e-12;                  ///< of 1 + |angle|
 /// Where the spin vanishes within less than this, panels are by time.
 inline constexpr double vanishing_angle = 0.05;

@@ -49,6 +49,7 @@ class SlidingPanels {
     ContactState<S> end;
     S turned;            ///< from start to end
     Value excess;        ///< the nodes resolve it if at most 1; infinity: it could not be solved
+    Value end_excess;    ///< of a panel by angle, the same of its end alone
     Mask indeterminate;  ///< the pivot is not above zero somewhere: the equations have no answer there
     Mask spin_vanishes;  ///< w^2 is not above zero somewhere
   };
@@ -150,9 +151,18 @@ class SlidingPanels {
     SlidingCoefficients<S> sliding;
     S u, force, weight, time_rate;
   };
-  /// Slip and travel of a panel whose spin and n0 are known, and n0 at its ends. Returns the slip's tail, of
+  /// How well the nodes resolve something, and its integral over the whole panel.
+  struct Tails {
+    Value between, whole;
+  };
+  /// Of a function, and of its integral. Where coefficients fall by one factor, those that Gauss's rule sees
+  /// first are as small as the square of the tail, but for the function's size.
+  static Tails tails(const Value& tail, const Value& integral) {
+    return {tail, tail * smaller(Value(Value(Number(10)) * tail / integral), Value(Number(1)))};
+  }
+  /// Slip and travel of a panel whose spin and n0 are known, and n0 at its ends. Returns the slip's tails, of
   /// one more than its size.
-  Value integrate_slip(const Slide& slide, const ContactState<S>& from, const AtNodes& at, const AtEnd& start,
+  Tails integrate_slip(const Slide& slide, const ContactState<S>& from, const AtNodes& at, const AtEnd& start,
                        const AtEnd& end, Panel& panel) const;
 
   Number tolerance_;
