@@ -9,12 +9,13 @@ namespace leapmap {
 
 template <class T>
 RollingLanes<T>::RollingLanes(double tolerance, std::size_t most)
-    : leg_(tolerance), timed_rolls_(tolerance, most), untimed_(most) {}
+    : leg_(tolerance), timed_rolls_(tolerance, most), phases_(most), untimed_(most) {}
 
 template <class T>
 void RollingLanes<T>::begin(std::uint32_t place, const Hoop<S>& hoop, const S& mu_static,
                             const ContactState<S>& at, const S& runway) {
-  waiting_.push_back({place, hoop, mu_static, at, runway});
+  phases_[place] = {hoop, mu_static, at, runway};
+  waiting_.push_back(place);
 }
 
 template <class T>
@@ -29,30 +30,31 @@ template <class T>
 void RollingLanes<T>::find_ends(std::vector<EndedPhase<S>>& ended) {
   bracketed_.clear();
   while (!waiting_.empty() && bracketed_.size() < width) {
-    Bracketed found;
-    if (bracket(waiting_.back(), found))
-      bracketed_.push_back(found);
-    else
+    if (!bracket(waiting_.back(), bracketed_.emplace_back())) {
+      bracketed_.pop_back();
       alone(waiting_.back(), ended);
+    }
     waiting_.pop_back();
   }
   if (!bracketed_.empty()) polish_ends(ended);
 }
 
 template <class T>
-void RollingLanes<T>::alone(const Phase& phase, std::vector<EndedPhase<S>>& ended) const {
+void RollingLanes<T>::alone(std::uint32_t place, std::vector<EndedPhase<S>>& ended) const {
+  const Phase& phase = phases_[place];
   ContactState<S> at = phase.at;
   const PhaseEnd end = leg_.run(phase.hoop, phase.mu_static, at, phase.runway);
-  ended.push_back({phase.place, end, at});
+  ended.push_back({place, end, at});
 }
 
 /// Where one guard alone falls through zero between two looks, or none up to the runway's end.
 template <class T>
-bool RollingLanes<T>::bracket(const Phase& phase, Bracketed& found) const {
+bool RollingLanes<T>::bracket(std::uint32_t place, Bracketed& found) const {
+  const Phase& phase = phases_[place];
   const Trig<S> phi = trig(phase.at.angle);
   const S sets_out = setting_out(phase.hoop, phase.at.angle, phi, phase.at.spin);
   if (sets_out == S(0)) return false;
-  found.phase = phase;
+  found.place = place;
   found.way = sets_out < S(0) ? S(-1) : S(1);
   found.roll = begin_roll(seen(phase.hoop, found.way), S(found.way * phase.at.angle), seen(phi, found.way),
                           std::abs(phase.at.spin));
@@ -91,12 +93,13 @@ void RollingLanes<T>::polish_ends(std::vector<EndedPhase<S>>& ended) {
   const auto of_bracket = [&](S Bracketed::*member) {
     return lanes([&](const Bracketed& b) { return b.*member; });
   };
+  const auto phase_of = [&](const Bracketed& b) -> const Phase& { return phases_[b.place]; };
   const Roll<T> roll = gathered_roll<T>([&](std::size_t i) -> const Roll<S>& { return bracketed(i).roll; });
   const T way = of_bracket(&Bracketed::way), from = of_bracket(&Bracketed::from),
           to = of_bracket(&Bracketed::to), from_value = of_bracket(&Bracketed::from_value),
           to_value = of_bracket(&Bracketed::to_value),
-          mu = lanes([](const Bracketed&b) { return b.phase.mu_static; }),
-          travel = lanes([](const Bracketed&b) { return b.phase.at.travel; }),
+          mu = lanes([&](const Bracketed&b) { return phase_of(b).mu_static; }),
+          travel = lanes([&](const Bracketed&b) { return phase_of(b).at.travel; }),
           forwards = lanes([](const Bracketed&b) { return S(b.end == PhaseEnd::slips_forwards); });
 
   const T zero(S(0));
@@ -118,17 +121,16 @@ void RollingLanes<T>::polish_ends(std::vector<EndedPhase<S>>& ended) {
   // Where it slips at once there is no way to time.
   const unsigned takes_time = Lanes<T>::bits((x > zero) & (spin - spin == zero)) & ((1u << count) - 1u);
   typename TimedRolls<T>::Places places;
-  for (std::size_t i = 0; i < width; ++i) places[i] = bracketed(i).phase.place;
+  for (std::size_t i = 0; i < width; ++i) places[i] = bracketed(i).place;
   timed_rolls_.begin(roll, x, places, takes_time);
   const auto travels = lanes_of(travel + way * x), angles = lanes_of(way * angle), spins = lanes_of(spin);
   for (std::size_t i = 0; i < count; ++i) {
     const Bracketed& now = bracketed_[i];
     if (takes_time >> i & 1u)
-      untimed_[now.phase.place] = {now.phase,
-                                   now.way < S(0) ? turned_over(now.end) : now.end,
-                                   {now.phase.at.time, travels[i], angles[i], spins[i]}};
+      untimed_[now.place] = {now.way < S(0) ? turned_over(now.end) : now.end,
+                             {phase_of(now).at.time, travels[i], angles[i], spins[i]}};
     else
-      alone(now.phase, ended);
+      alone(now.place, ended);
   }
 }
 
@@ -139,7 +141,7 @@ void RollingLanes<T>::time_some(std::vector<EndedPhase<S>>& ended) {
   for (const auto& [place, duration] : timed_) {
     const Untimed& phase = untimed_[place];
     if (std::isnan(duration)) {
-      alone(phase.phase, ended);
+      alone(place, ended);
     } else {
       ended.push_back({place, phase.end, phase.at});
       ended.back().at.time += duration;

@@ -34,7 +34,6 @@ class RollingLanes {
   static constexpr std::size_t width = Lanes<T>::count;
 
   struct Phase {
-    std::uint32_t place;
     Hoop<S> hoop;
     S mu_static;
     ContactState<S> at;
@@ -42,7 +41,7 @@ class RollingLanes {
   };
   /// A phase whose end is known to lie between two angles, as seen on its leg.
   struct Bracketed {
-    Phase phase;
+    std::uint32_t place;
     S way;
     Roll<S> roll;
     PhaseEnd end;
@@ -51,12 +50,11 @@ class RollingLanes {
   };
   /// A phase whose end is known, up to which it is to be timed.
   struct Untimed {
-    Phase phase;
     PhaseEnd end;
     ContactState<S> at;  ///< there; its time is that of the phase's beginning
   };
-  bool bracket(const Phase& phase, Bracketed& found) const;
-  void alone(const Phase& phase, std::vector<EndedPhase<S>>& ended) const;
+  bool bracket(std::uint32_t place, Bracketed& found) const;
+  void alone(std::uint32_t place, std::vector<EndedPhase<S>>& ended) const;
   /// Finds where some phases end that wait.
   void find_ends(std::vector<EndedPhase<S>>& ended);
   /// To their last digits, of those in bracketed_.
@@ -67,7 +65,8 @@ class RollingLanes {
   RollingLeg<S> leg_;
   RollingWalk<S> walk_;
   TimedRolls<T> timed_rolls_;
-  std::vector<Phase> waiting_;
+  std::vector<Phase> phases_;           // by place
+  std::vector<std::uint32_t> waiting_;  // places
   std::vector<Bracketed> bracketed_;
   std::vector<Untimed> untimed_;  // by place
   std::vector<typename TimedRolls<T>::Timed> timed_;

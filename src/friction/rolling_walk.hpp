@@ -42,18 +42,14 @@ struct Looks {
   struct Samples {
     Numbers value, rate;
 
-    void put_lanes(const Sample<T>& lanes) {
+    /// Returns between which of the neighbours, `apart` from each other, it surely does not fall to zero.
+    MaskOf<T> put_lanes(const Sample<T>& lanes, const T& apart) {
       Lanes<T>::store(lanes.value, value.data() + 1), Lanes<T>::store(lanes.rate, rate.data() + 1);
+      const Sample<T> before{moved_up(value[0], lanes.value), moved_up(rate[0], lanes.rate)};
+      return (smaller(before.value, lanes.value) > T(S(0))) & stays_above(before, lanes, apart);
     }
     void put(std::size_t k, const Sample<S>& sample) { value[k] = sample.value, rate[k] = sample.rate; }
     Sample<S> at(std::size_t k) const { return {value[k], rate[k]}; }
-
-    /// Between which of the neighbours, `apart` from each other, it surely does not fall to zero.
-    MaskOf<T> clear(const T& apart) const {
-      const Sample<T> a{Lanes<T>::load(value.data()), Lanes<T>::load(rate.data())},
-          b{Lanes<T>::load(value.data() + 1), Lanes<T>::load(rate.data() + 1)};
-      return (smaller(a.value, b.value) > T(S(0))) & stays_above(a, b, apart);
-    }
   };
   Numbers angle;
   Samples vis_viva, downhill, uphill;
@@ -62,16 +58,14 @@ struct Looks {
     angle[k] = look.angle, vis_viva.put(k, look.vis_viva);
     downhill.put(k, look.guards.downhill), uphill.put(k, look.guards.uphill);
   }
-  void put_lanes(const Sample<T>& E, const StickGuards<T>& guards) {
-    vis_viva.put_lanes(E), downhill.put_lanes(guards.downhill), uphill.put_lanes(guards.uphill);
+  /// Returns between which neighbours neither spin nor friction is used up, a bit for each two.
+  unsigned put_lanes(const T& angles, const Sample<T>& E, const StickGuards<T>& guards) {
+    Lanes<T>::store(angles, angle.data() + 1);
+    const T apart = angles - moved_up(angle[0], angles);
+    return Lanes<T>::bits(vis_viva.put_lanes(E, apart) & downhill.put_lanes(guards.downhill, apart) &
+                          uphill.put_lanes(guards.uphill, apart));
   }
   Look<S> at(std::size_t k) const { return {angle[k], vis_viva.at(k), {downhill.at(k), uphill.at(k)}}; }
-
-  /// Between which neighbours neither spin nor friction is used up, a bit for each two.
-  unsigned clear_of_ends() const {
-    const T apart = Lanes<T>::load(angle.data() + 1) - Lanes<T>::load(angle.data());
-    return Lanes<T>::bits(vis_viva.clear(apart) & downhill.clear(apart) & uphill.clear(apart));
-  }
 };
 
 /// What a leg looks like at its angles. roll: of the phase's beginning, near which E is known best, as seen
@@ -150,11 +144,9 @@ class RollingWalk {
       const Trig<T> phi{Lanes<T>::load(sin_.data() + first), Lanes<T>::load(cos_.data() + first),
                         Lanes<T>::load(versine_.data() + first)};
       const T angles = (T(S(node)) + Lanes<T>::load(counted_.data())) * T(step);
-      Lanes<T>::store(angles, looks.angle.data() + 1);
       const T E = vis_viva(rolls, angles, phi);
-      looks.put_lanes({E, T(S(2)) * torque(rolls.hoop, phi)},
-                      stick_guards(rolls.hoop, phi, E, T(view.mu_static())));
-      const unsigned clear = looks.clear_of_ends();
+      const unsigned clear = looks.put_lanes(angles, {E, T(S(2)) * torque(rolls.hoop, phi)},
+                                             stick_guards(rolls.hoop, phi, E, T(view.mu_static())));
       constexpr unsigned all_clear = (1u << width) - 1u;
       if (clear == all_clear && looks.angle[1] > looks.angle[0] && looks.angle[width] < last) {
         looks.put(0, looks.at(width));

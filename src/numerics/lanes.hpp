@@ -29,6 +29,8 @@ struct Lanes {
   static void store(const T& value, T* to) { *to = value; }
   /// One bit a lane, lane 0 lowest.
   static unsigned bits(bool mask) { return mask; }
+  /// `first`, then all lanes but the last.
+  static T moved_up(const T& first, const T&) { return first; }
   /// 64 bits a lane.
   using Word = std::uint64_t;
   /// Sets the marks in the lanes of the mask.
@@ -53,6 +55,18 @@ struct Lanes<xsimd::batch<S, A>> {
     return word | xsimd::bitwise_cast<Word>(xsimd::select(mask, xsimd::bitwise_cast<B>(Word(marks)), B(0)));
   }
   static void store(const Word& word, std::uint64_t* to) { word.store_unaligned(to); }
+  static xsimd::batch<S, A> moved_up(const S& first, const xsimd::batch<S, A>& value) {
+#ifdef __AVX512F__
+    // By memory the load would wait for both stores.
+    if constexpr (count == 8)
+      return {_mm512_castsi512_pd(_mm512_alignr_epi64(_mm512_castpd_si512(value.data),
+                                                      _mm512_castpd_si512(_mm512_set1_pd(first)), 7))};
+#endif
+    std::array<S, count + 1> lanes;
+    lanes[0] = first;
+    store(value, lanes.data() + 1);
+    return load(lanes.data());
+  }
   static unsigned bits(const Mask& mask) {
 #ifdef __AVX512F__
     if constexpr (std::is_same_v<A, xsimd::avx512f> || std::is_base_of_v<xsimd::avx512f, A>)
@@ -90,6 +104,12 @@ LaneArray<T> lanes_of(const T& value) {
   LaneArray<T> lanes;
   Lanes<T>::store(value, lanes.data());
   return lanes;
+}
+
+/// `first`, then all lanes but the last.
+template <class T>
+T moved_up(const ScalarOf<T>& first, const T& value) {
+  return Lanes<T>::moved_up(first, value);
 }
 
 /// number_of(i) in lane i.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -248,6 +249,30 @@ TEST(JournaledFile, RemembersItsFirstFailureAndCommitsNothingAfterIt) {
     EXPECT_THROW(file.rethrow_failure(), IoError);
   }
   EXPECT_EQ(bytes_of(folder / "file"), states.back());
+}
+
+TEST(JournaledFile, ASyncThatFailsWhileTheFileGrowsIsItsFailure) {
+  const testing::TemporaryFolder folder;
+  const Bytes committed(8, std::byte{7});
+  std::atomic<int> syncs = 0;
+  {
+    JournaledFile file(folder / "file", Access::create);
+    file.write(0, committed);
+    file.resize(committed.size());
+    file.commit();
+    // Only the first fails, as the system tells of lost bytes once.
+    testing::before_system_call = [&](const testing::SystemCall& call) {
+      if (call.kind == testing::SystemCall::Kind::sync && syncs++ == 0) throw IoError("bytes were lost");
+    };
+    const Bytes much(std::size_t{5} << 20, std::byte{8});
+    file.write(committed.size(), much);
+    file.resize(committed.size() + much.size());
+    EXPECT_THROW(file.commit(), IoError);
+    EXPECT_EQ(syncs, 1) << "by the thread that syncs what was written";
+    EXPECT_THROW(file.commit(), IoError);
+    testing::before_system_call = nullptr;
+  }
+  EXPECT_EQ(bytes_of(folder / "file"), committed);
 }
 
 TEST(JournaledFile, IsSealedWithAChecksumThatEveryChangedBitBreaks) {
