@@ -11,7 +11,7 @@ function(leapmap_kernel_objects target march entry)
   target_compile_definitions(${target} PRIVATE LEAPMAP_KERNELS=${entry})
   target_compile_options(${target} PRIVATE $<$<NOT:$<STREQUAL:${march},>>:-march=${march}> -fno-gnu-unique
     -fno-lto -fno-trapping-math -fno-math-errno
-    # What a loop over lanes calls is worth inlining up to some hundred instructions: a call passes its lanes
+    # What a loop over lanes calls is worth inlining up to hundreds of instructions: a call passes its lanes
     # by memory. Loops over a panel's nodes are worth unrolling.
     "$<$<CXX_COMPILER_ID:GNU>:SHELL:-funroll-loops --param max-inline-insns-auto=400>")
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)

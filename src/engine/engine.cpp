@@ -29,12 +29,11 @@ std::size_t piece_of(const Request& request) {
   return std::clamp<std::size_t>(most_hoops / static_cast<std::size_t>(request.scatter.samples), 1, most);
 }
 
-/// The same of a tile. Hoops made after a row of drawings are interpolated: rows are whole where they fit.
-std::size_t piece_of(const Request& request, const Tiling& tiling) {
-  const std::size_t most = std::min(piece_of(request), tiling.largest_tile()),
-                    row = tiling.tile_shape().back();
-  const bool in_rows = wants_samples(request) && can_be_interpolated(request) && row <= most;
-  return in_rows ? most - most % row : most;
+/// How many of a tile's designs, from `first` on, are solved at once where hoops are interpolated along rows:
+/// some rows, or what is left of one.
+std::size_t some_rows(const Tile& tile, std::size_t first, std::size_t most) {
+  const std::size_t row = tile.extent.back();
+  return row <= most ? most - most % row : std::min(most, row - first % row);
 }
 
 struct Item {
@@ -112,7 +111,8 @@ std::size_t run_sweep(const Spec& spec, const Request& request, const Tiling& ti
       },
       most_waiting_bytes(thread_count(options.threads)), tiles);
 
-  const std::size_t piece = piece_of(request, tiling);
+  const std::size_t piece = std::min(piece_of(request), tiling.largest_tile());
+  const bool in_rows = !interpolated_along(spec, request).empty();
   const auto points = points_of(request.scatter);
   const bool scattered = wants_samples(request), needs_bodies = scattered || derives_by_body(request);
   parallel_for_each(tiles, thread_count(options.threads), options.stop_requested, [&] {
@@ -124,14 +124,14 @@ std::size_t run_sweep(const Spec& spec, const Request& request, const Tiling& ti
           try {
             const std::size_t number = options.first_tile + i;
             const Tile tile = tiling.tile(number);
-            for (std::size_t first = 0; first < tile.count; first += piece) {
+            for (std::size_t first = 0, count = 0; first < tile.count; first += count) {
               // A tile of many hoops as made may take minutes, and is given up; any other is brought to its
               // end, unless that takes seconds.
               if (scattered && options.stop_requested && options.stop_requested()) {
                 delivery.close(number);
                 return false;
               }
-              const std::size_t count = std::min(piece, tile.count - first);
+              count = std::min(in_rows ? some_rows(tile, first, piece) : piece, tile.count - first);
               const std::span some(block.data(), count);
               const std::span of_some(bodies.data(), std::min(count, bodies.size()));
               space.fill(tile, first, some, of_some);

@@ -42,7 +42,8 @@ struct Looks {
   struct Samples {
     Numbers value, rate;
 
-    /// Returns between which of the neighbours, `apart` from each other, it surely does not fall to zero.
+    /// Stores the lanes. Returns between which neighbours, `apart` from each other, the function surely stays
+    /// above zero.
     MaskOf<T> put_lanes(const Sample<T>& lanes, const T& apart) {
       Lanes<T>::store(lanes.value, value.data() + 1), Lanes<T>::store(lanes.rate, rate.data() + 1);
       const Sample<T> before{moved_up(value[0], lanes.value), moved_up(rate[0], lanes.rate)};
@@ -58,7 +59,8 @@ struct Looks {
     angle[k] = look.angle, vis_viva.put(k, look.vis_viva);
     downhill.put(k, look.guards.downhill), uphill.put(k, look.guards.uphill);
   }
-  /// Returns between which neighbours neither spin nor friction is used up, a bit for each two.
+  /// Stores the lanes. Returns between which neighbours neither spin nor friction is used up, a bit for each
+  /// two.
   unsigned put_lanes(const T& angles, const Sample<T>& E, const StickGuards<T>& guards) {
     Lanes<T>::store(angles, angle.data() + 1);
     const T apart = angles - moved_up(angle[0], angles);

@@ -205,14 +205,16 @@ auto SlidingLanes<T>::look_at_panel(const InLanes& slides, const Ahead& ahead) c
   Seen seen;
   seen.is_steep = !(panel_.least_pivot > slides.least_pivot);
   const MaskOf<T> finite = panel_.excess < T(std::numeric_limits<S>::infinity());
-  seen.solved = ahead.turns & !seen.is_steep & finite & (slides.is_last | (panel_.end_excess <= one));
-  seen.done = seen.solved & slides.is_last;
+  const MaskOf<T> sharp = panel_.excess <= one,
+                  ends_well = ahead.turns & !seen.is_steep & finite &
+                              (slides.is_last | sharp | (panel_.end_excess <= one));
+  seen.done = ends_well & slides.is_last;
 
-  const MaskOf<T> looks = seen.solved & !slides.is_last, sharp = panel_.excess <= one;
+  const MaskOf<T> looks = ends_well & !slides.is_last;
   seen.events = first_events(panel_, slides.runway, slides.direction, looks);
   const MaskOf<T> falls = looks & seen.events.plain & (seen.events.place <= one), comes = falls & sharp;
   seen.goes_on = looks & seen.events.plain & !falls;
-  seen.solved = seen.solved & (slides.is_last | sharp | seen.goes_on);
+  seen.solved = ends_well & (slides.is_last | sharp | seen.goes_on);
   seen.inside = {slides.from, MaskOf<T>(false)};
   if (any(comes))
     seen.inside =
@@ -243,6 +245,7 @@ auto SlidingLanes<T>::next_length(const InLanes& slides, const Ahead& ahead, con
   const T shortest_plain = T(S(shortest_angle)) * (one + T(abs(slides.from.angle))),
           least = select(seen.is_steep, T(S(shortest_steep)),
                          select(panel_.spin_vanishes, T(S(shortest_vanishing)), shortest_plain));
+  // Where an event comes on a panel too coarse to tell its place, the next one ends just beyond it.
   const T beyond_event = ahead.stretch.angle(smaller(T(S(1.1)) * seen.events.place, one));
   const T resolved = ahead.length * select(seen.unresolved, shrunk_by(panel_.spin_excess),
                                            select(seen.is_steep, half, shrunk_by(panel_.excess)));

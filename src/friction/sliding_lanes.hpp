@@ -84,7 +84,8 @@ class SlidingLanes {
   /// What the panels say, once they are solved.
   struct Seen {
     MaskOf<T> is_steep;  ///< it comes too near to Painleve's edge
-    /// To the tolerance; where it is the last one, as well as it goes; where nothing comes, its end alone.
+    /// To the tolerance; where it is the last one, as well as it goes. Where nothing comes only its end has
+    /// to be accurate.
     MaskOf<T> solved;
     MaskOf<T> done;         ///< the slide has ended, at the panel's end
     MaskOf<T> goes_on;      ///< nothing ends the slide on this panel

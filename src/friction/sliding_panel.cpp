@@ -112,7 +112,8 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   const S length = stretch.length();
   const Mask rests = stretch.begin + stretch.span == S(0);  // at its end
   panel.spin_vanishes = Mask(false);
-  panel.excess = panel.end_excess = Value(std::numeric_limits<Number>::infinity());
+  const Value unsolved(std::numeric_limits<Number>::infinity());
+  panel.excess = panel.end_excess = unsolved;
   panel.turned = way * length;
   panel.end.angle = from.angle + panel.turned;
   end.phi = trig(panel.end.angle);
@@ -188,25 +189,25 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   const S duration = grid_.integral(time_rate);
   panel.end.time = from.time + duration;
   panel.end.spin = way * sqrt(end.u);
-  const Tails slip = integrate_slip(slide, from, at, start, end, panel);
+  const Errors slip = integrate_slip(slide, from, at, start, end, panel);
   // Beside the end at rest w^2 has few digits, and little weight.
   const Value lost =
       select(rests, Value(Number(1)), smaller(Value(value_of(start.u) / slowest), Value(Number(1e6))));
   const Value noise = roundings + Value(Number(16) * std::numeric_limits<Number>::epsilon()) * lost;
-  const Value of_duration = largest_part(duration);
-  const Tails time = tails(grid_.tail(time_rate) / of_duration, Value(Number(1)));
-  const auto where_known = [&](const Value& largest_tail) {
-    return select(panel.indeterminate | panel.spin_vanishes, panel.excess,
-                  Value(largest_tail / (Value(tolerance_) + noise)));
+  const Value time_tail = grid_.tail(time_rate) / largest_part(duration);
+  const auto excess_of = [&](const Value& error) {
+    return select(panel.indeterminate | panel.spin_vanishes, unsolved,
+                  Value(error / (Value(tolerance_) + noise)));
   };
-  panel.end_excess = where_known(largest<Value>({spin_tail, time.whole, slip.whole}));
-  panel.excess = where_known(largest<Value>({spin_tail, Value(Number(0.1)) * time.between, slip.between}));
+  panel.excess = excess_of(largest<Value>({spin_tail, Value(Number(0.1)) * time_tail, slip.between}));
+  panel.end_excess =
+      excess_of(largest<Value>({spin_tail, integral_error(time_tail, Value(Number(1))), slip.at_end}));
 }
 // NOLINTEND(readability-function-size)
 
 template <class S>
 auto SlidingPanels<S>::integrate_slip(const Slide& slide, const ContactState<S>& from, const AtNodes& at,
-                                      const AtEnd& start, const AtEnd& end, Panel& panel) const -> Tails {
+                                      const AtEnd& start, const AtEnd& end, Panel& panel) const -> Errors {
   using std::abs;
   const Hoop<S>& hoop = slide.hoop;
   const S way = select(panel.turned < S(0), S(-1), S(1));
@@ -236,8 +237,7 @@ auto SlidingPanels<S>::integrate_slip(const Slide& slide, const ContactState<S>&
   panel.travel.start = {from.travel, way * start.weight + from.slip * start.time_rate};
   panel.travel.end = {panel.end.travel, way * end.weight + panel.end.slip * end.time_rate};
   const Value size = largest_part(S(S(1) + abs(from.slip)));
-  const Tails slip = tails(slips.tail, Value(abs(value_of(slips.whole))));
-  return {slip.between / size, slip.whole / size};
+  return {slips.tail / size, integral_error(slips.tail, Value(abs(value_of(slips.whole)))) / size};
 }
 
 template <class S>

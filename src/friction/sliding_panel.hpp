@@ -104,9 +104,9 @@ class SlidingPanels {
     const S root = sqrt(length);
     return {length, -root, root, S(-1)};
   }
-  /// Solves a panel by angle. Where it is indeterminate, only `excess` holds besides; where the spin
-  /// vanishes, excess, spin_excess, start_y and the driven ones do: the rest is the panel's that was there
-  /// before.
+  /// Solves a panel by angle. Where it is indeterminate, only `excess` and `end_excess` hold besides; where
+  /// the spin vanishes, they, spin_excess, start_y and the driven ones do: the rest is the panel's that was
+  /// there before.
   void solve_by_angle(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
                       Panel& panel) const;
   /// A state inside a panel, and whether it has kept its digits.
@@ -151,19 +151,20 @@ class SlidingPanels {
     SlidingCoefficients<S> sliding;
     S u, force, weight, time_rate;
   };
-  /// How well the nodes resolve something, and its integral over the whole panel.
-  struct Tails {
-    Value between, whole;
-  };
-  /// Of a function, and of its integral. Where coefficients fall by one factor, those that Gauss's rule sees
-  /// first are as small as the square of the tail, but for the function's size.
-  static Tails tails(const Value& tail, const Value& integral) {
-    return {tail, tail * smaller(Value(Value(Number(10)) * tail / integral), Value(Number(1)))};
+  /// The error of an integral over a panel whose nodes resolve a function to its tail. Where its Legendre
+  /// coefficients fall like a geometric series, the first that Gauss's rule gets wrong are about the tail's
+  /// square over the function's size. Told is some eighty times what that makes of the integral.
+  static Value integral_error(const Value& tail, const Value& integral) {
+    const Value ten(Number(10)), least(std::numeric_limits<Number>::min());
+    return ten * tail * tail / (larger(integral, Value(ten * tail)) + least);
   }
-  /// Slip and travel of a panel whose spin and n0 are known, and n0 at its ends. Returns the slip's tails, of
-  /// one more than its size.
-  Tails integrate_slip(const Slide& slide, const ContactState<S>& from, const AtNodes& at, const AtEnd& start,
-                       const AtEnd& end, Panel& panel) const;
+  struct Errors {
+    Value between, at_end;  ///< at and between the nodes, and at the panel's end
+  };
+  /// Slip and travel of a panel whose spin and n0 are known, and n0 at its ends. Returns the slip's errors,
+  /// of one more than its size.
+  Errors integrate_slip(const Slide& slide, const ContactState<S>& from, const AtNodes& at,
+                        const AtEnd& start, const AtEnd& end, Panel& panel) const;
 
   Number tolerance_;
   Grid grid_;

@@ -85,6 +85,7 @@ void JournaledFile::open(Locking locking) {
     stored_ = journal->begin;
   }
   size_ = committed_;
+  sync_begun_ = stored_;
   if (access_ == Access::change && journal_valid_) make_waiting_writes();
 }
 
@@ -166,7 +167,7 @@ void JournaledFile::write(std::uint64_t offset, std::span<const std::byte> bytes
 
 void JournaledFile::begin_to_sync() {
   if (syncing_.valid()) {
-    // Of a slow disk: later, and more at once.
+    // The disk is slow: a later call syncs this as well.
     if (syncing_.wait_for(std::chrono::seconds(0)) == std::future_status::timeout) return;
     end_sync();
   }
@@ -193,6 +194,7 @@ void JournaledFile::commit() {
     }
     committed_ = size_;
     make_waiting_writes();
+    sync_begun_ = stored_;
   });
 }
 

@@ -75,7 +75,8 @@ class JournaledFile {
   std::optional<bool> seal_holds() const;
   /// Whether the file ends with a seal.
   bool is_sealed() const { return seal_.has_value(); }
-  /// Drops what was not committed and gives its space back; from now on writes and commits do nothing.
+  /// Drops what was not committed and gives its space back; from now on writes and commits do nothing. Waits
+  /// for a sync that has begun.
   void abandon();
   /// Gives this very file another name, still locked, in place of an older file there if `replace`. Returns
   /// false if the folder could not be synced: the file is in its place, but a power cut may undo that. Throws
@@ -100,9 +101,10 @@ class JournaledFile {
   void read_as_written(std::uint64_t offset, std::span<std::byte> bytes) const;
   void commit_first();
   void make_waiting_writes();
-  /// A thread brings to disk what was written so far, so that a commit has less to wait for.
+  /// Lets a thread bring to disk what was written so far, so that a commit has less to wait for; nothing
+  /// while one is at it. Throws IoError if the one before failed.
   void begin_to_sync();
-  /// Waits for that. Throws IoError if it failed: the system tells of that but once.
+  /// Waits for that thread. Throws IoError if it failed, as the system reports lost bytes only once.
   void end_sync();
   /// Whether a write would change anything: HDF5 writes the same head again as it closes a file.
   bool differs(std::uint64_t offset, std::span<const std::byte> bytes) const;
@@ -113,8 +115,8 @@ class JournaledFile {
   std::uint64_t committed_ = 0;        ///< bytes below it are not overwritten in place
   std::uint64_t stored_ = 0;           ///< bytes the file has on disk, a journal not counted
   std::uint64_t size_ = 0;             ///< bytes it is to have after the next commit
-  std::uint64_t sync_begun_ = 0;       ///< bytes that are on their way to disk, if not there
-  std::future<void> syncing_;          ///< brings them there
+  std::uint64_t sync_begun_ = 0;       ///< bytes that are on their way to disk, or there
+  std::future<void> syncing_;          ///< the thread that brings them there
   std::vector<WaitingWrite> waiting_;  ///< in the order they came
   std::optional<Seal> seal_;           ///< what ends the file on disk
   bool appended_ = false;              ///< since the last commit

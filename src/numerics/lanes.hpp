@@ -57,7 +57,7 @@ struct Lanes<xsimd::batch<S, A>> {
   static void store(const Word& word, std::uint64_t* to) { word.store_unaligned(to); }
   static xsimd::batch<S, A> moved_up(const S& first, const xsimd::batch<S, A>& value) {
 #ifdef __AVX512F__
-    // By memory the load would wait for both stores.
+    // Through memory the load would wait for both stores.
     if constexpr (count == 8)
       return {_mm512_castsi512_pd(_mm512_alignr_epi64(_mm512_castpd_si512(value.data),
                                                       _mm512_castpd_si512(_mm512_set1_pd(first)), 7))};

@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <thread>
 
 #include "leapmap/errors.hpp"
 #include "support/system_calls.hpp"
@@ -254,7 +254,8 @@ TEST(JournaledFile, RemembersItsFirstFailureAndCommitsNothingAfterIt) {
 TEST(JournaledFile, ASyncThatFailsWhileTheFileGrowsIsItsFailure) {
   const testing::TemporaryFolder folder;
   const Bytes committed(8, std::byte{7});
-  std::atomic<int> syncs = 0;
+  int syncs = 0;
+  std::thread::id by;
   {
     JournaledFile file(folder / "file", Access::create);
     file.write(0, committed);
@@ -262,13 +263,16 @@ TEST(JournaledFile, ASyncThatFailsWhileTheFileGrowsIsItsFailure) {
     file.commit();
     // Only the first fails, as the system tells of lost bytes once.
     testing::before_system_call = [&](const testing::SystemCall& call) {
-      if (call.kind == testing::SystemCall::Kind::sync && syncs++ == 0) throw IoError("bytes were lost");
+      if (call.kind != testing::SystemCall::Kind::sync || syncs++ > 0) return;
+      by = std::this_thread::get_id();
+      throw IoError("bytes were lost");
     };
     const Bytes much(std::size_t{5} << 20, std::byte{8});
     file.write(committed.size(), much);
     file.resize(committed.size() + much.size());
     EXPECT_THROW(file.commit(), IoError);
-    EXPECT_EQ(syncs, 1) << "by the thread that syncs what was written";
+    EXPECT_EQ(syncs, 1) << "a commit does not go on after that";
+    EXPECT_NE(by, std::this_thread::get_id()) << "nobody waits while the file grows";
     EXPECT_THROW(file.commit(), IoError);
     testing::before_system_call = nullptr;
   }

@@ -21,6 +21,14 @@ TEST(Lanes, BitsTellEachLaneOfAMask) {
   EXPECT_EQ(Lanes<double>::bits(true), 1u);
 }
 
+TEST(Lanes, MovedUpTheFirstLaneIsNew) {
+  LaneArray<Batch> lanes;
+  for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i] = static_cast<double>(i + 1);
+  const auto moved = lanes_of(moved_up(0.0, Lanes<Batch>::load(lanes.data())));
+  for (std::size_t i = 0; i < moved.size(); ++i) EXPECT_EQ(moved[i], static_cast<double>(i));
+  EXPECT_EQ(moved_up(3.0, 5.0), 3.0);
+}
+
 TEST(Lanes, ReciprocalSquareRootIsGoodToTwoRoundings) {
   std::mt19937_64 random(1);
   for (int i = 0; i < 10'000; ++i) {

@@ -5,6 +5,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
+
 extern "C" {
 ssize_t __real_pwrite(int descriptor, const void* bytes, size_t count, off_t offset);
 int __real_fsync(int descriptor);
@@ -23,7 +25,9 @@ bool dies_at_call(long number, const std::function<void()>& f) {
   constexpr int killed = 17, ended = 0;
   const pid_t child = ::fork();
   if (child == 0) {
-    before_system_call = [left = number](const SystemCall& call) mutable {
+    static std::atomic<long> left;  // of calls by any thread
+    left = number;
+    before_system_call = [](const SystemCall& call) {
       if (left-- > 0) return;
       if (call.kind == SystemCall::Kind::write && !call.bytes.empty())
         static_cast<void>(__real_pwrite(call.descriptor, call.bytes.data(), call.bytes.size() / 2,
