@@ -153,7 +153,7 @@ class SlidingPanels {
   };
   /// The error of an integral over a panel whose nodes resolve a function to its tail. Where its Legendre
   /// coefficients fall like a geometric series, the first that Gauss's rule gets wrong are about the tail's
-  /// square over the function's size. Told is some eighty times what that makes of the integral.
+  /// square over the function's size. Returns some eighty times what they make of the integral.
   static Value integral_error(const Value& tail, const Value& integral) {
     const Value ten(Number(10)), least(std::numeric_limits<Number>::min());
     return ten * tail * tail / (larger(integral, Value(ten * tail)) + least);
