@@ -30,7 +30,7 @@ std::size_t piece_of(const Request& request) {
 }
 
 /// How many of a tile's designs, from `first` on, are solved at once where hoops are interpolated along rows:
-/// some rows, or what is left of one.
+/// as many whole rows as fit, or what is left of one.
 std::size_t some_rows(const Tile& tile, std::size_t first, std::size_t most) {
   const std::size_t row = tile.extent.back();
   return row <= most ? most - most % row : std::min(most, row - first % row);

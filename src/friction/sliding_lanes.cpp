@@ -245,7 +245,7 @@ auto SlidingLanes<T>::next_length(const InLanes& slides, const Ahead& ahead, con
   const T shortest_plain = T(S(shortest_angle)) * (one + T(abs(slides.from.angle))),
           least = select(seen.is_steep, T(S(shortest_steep)),
                          select(panel_.spin_vanishes, T(S(shortest_vanishing)), shortest_plain));
-  // Where an event comes on a panel too coarse to tell its place, the next one ends just beyond it.
+  // If a panel is too coarse to locate the event on it, the next panel ends just beyond that event.
   const T beyond_event = ahead.stretch.angle(smaller(T(S(1.1)) * seen.events.place, one));
   const T resolved = ahead.length * select(seen.unresolved, shrunk_by(panel_.spin_excess),
                                            select(seen.is_steep, half, shrunk_by(panel_.excess)));

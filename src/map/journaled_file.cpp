@@ -194,7 +194,6 @@ void JournaledFile::commit() {
     }
     committed_ = size_;
     make_waiting_writes();
-    sync_begun_ = stored_;
   });
 }
 
@@ -218,7 +217,7 @@ void JournaledFile::commit_first() {
   write_all(descriptor_, path_, 0, first);
   appended_ = false;
   waiting_.clear();
-  committed_ = stored_ = size_;
+  committed_ = stored_ = sync_begun_ = size_;
   sync(descriptor_, path_);
   if (!sync_folder(folder_of(path_))) throw IoError(path_ + ": its folder cannot be synced to disk");
 }
@@ -245,7 +244,7 @@ void JournaledFile::make_waiting_writes() {
   seal_.reset();
   journal_valid_ = false;
   waiting_.clear();
-  stored_ = committed_;
+  stored_ = sync_begun_ = committed_;
 }
 
 void JournaledFile::abandon() {

@@ -261,7 +261,7 @@ TEST(JournaledFile, ASyncThatFailsWhileTheFileGrowsIsItsFailure) {
     file.write(0, committed);
     file.resize(committed.size());
     file.commit();
-    // Only the first fails, as the system tells of lost bytes once.
+    // Only the first sync fails: the system reports lost bytes once.
     testing::before_system_call = [&](const testing::SystemCall& call) {
       if (call.kind != testing::SystemCall::Kind::sync || syncs++ > 0) return;
       by = std::this_thread::get_id();
@@ -272,7 +272,7 @@ TEST(JournaledFile, ASyncThatFailsWhileTheFileGrowsIsItsFailure) {
     file.resize(committed.size() + much.size());
     EXPECT_THROW(file.commit(), IoError);
     EXPECT_EQ(syncs, 1) << "a commit does not go on after that";
-    EXPECT_NE(by, std::this_thread::get_id()) << "nobody waits while the file grows";
+    EXPECT_NE(by, std::this_thread::get_id()) << "another thread syncs while the file grows";
     EXPECT_THROW(file.commit(), IoError);
     testing::before_system_call = nullptr;
   }
