@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "numerics/mixed.hpp"
@@ -106,31 +107,50 @@ void MadeLine::solve_asked(std::span<const Design> drawings, MadeHoops& hoops, c
 }
 
 template <class F>
-void MadeLine::for_gaps(std::size_t hoop, const F& gap) {
+void MadeLine::for_gaps(std::size_t hoop, const F& take) {
   nodes_.clear();
   for (std::size_t j = 0; j < count_; ++j)
     if (kinds_[place(j, hoop)].is_solved) nodes_.push_back(j);
-  for (std::size_t i = 0; i + 1 < nodes_.size(); ++i) {
-    if (nodes_[i + 1] - nodes_[i] == 1) continue;
-    // Both ends of the gap, then the nearest ones of its kind on both sides; beside another kind or the
-    // line's end both on one side.
-    Stencil nodes{nodes_[i], nodes_[i + 1], nodes_[i], nodes_[i]};  // of fewer than four: not smooth
-    const Kind& kind = kinds_[place(nodes_[i], hoop)];
-    const auto is_like = [&](std::size_t k) { return kind.is_like(kinds_[place(nodes_[k], hoop)]); };
+  for (std::size_t i = 0; i + 1 < nodes_.size(); ++i)
+    if (nodes_[i + 1] - nodes_[i] > 1) take(gap_after(i, hoop));
+}
+
+auto MadeLine::gap_after(std::size_t i, std::size_t hoop) const -> Gap {
+  Gap gap{.from = nodes_[i], .to = nodes_[i + 1]};
+  const auto kind_of = [&](std::size_t k) -> const Kind& { return kinds_[place(nodes_[k], hoop)]; };
+  // Of the nodes about the gap, those that are alike: so many below and above at most.
+  const auto alike = [&](const auto& is_alike) {
     std::size_t low = i, high = i + 1;
-    while (low > 0 && i - low < 2 && is_like(low - 1)) --low;
-    while (high + 1 < nodes_.size() && high - i < 3 && is_like(high + 1)) ++high;
-    if (is_like(i + 1) && high - low >= 3) {
-      const std::size_t first = std::clamp(i > 0 ? i - 1 : 0, low, high - 3);
-      for (std::size_t k = first, filled = 2; filled < nodes.size(); ++k)
-        if (k != i && k != i + 1) nodes[filled++] = nodes_[k];
-    }
-    gap(nodes_[i], nodes_[i + 1], nodes);
+    while (low > 0 && i - low < 2 && is_alike(low - 1)) --low;
+    while (high + 1 < nodes_.size() && high - i < 3 && is_alike(high + 1)) ++high;
+    return std::pair(low, high);
+  };
+  const auto ends_like = [&](std::size_t k) { return this->ends_like(kind_of(i), kind_of(k)); };
+  const auto is_like = [&](std::size_t k) { return kind_of(i).is_like(kind_of(k)); };
+  if (!ends_like(i + 1) || kind_of(i).status == Status::failed) return gap;
+  if (is_like(i + 1)) {
+    auto [low, high] = alike(is_like);
+    if (high - low < 3) std::tie(low, high) = alike(ends_like);
+    if (high - low < 3) return gap;
+    const std::size_t first = std::clamp(i > 0 ? i - 1 : 0, low, high - 3);
+    gap.nodes = {nodes_[i], nodes_[i + 1]};
+    for (std::size_t k = first, filled = 2; filled < gap.nodes.size(); ++k)
+      if (k != i && k != i + 1) gap.nodes[filled++] = nodes_[k];
+    gap.checks[0] = {gap.nodes[0], gap.nodes[1], gap.nodes[2]}, gap.checked = 1;
+    return gap;
   }
+  // Phases change in the gap, and with them perhaps what the numbers follow: each side has to tell them.
+  const auto [low, high] = alike(ends_like);
+  if (i - low < 2 || high - i < 3) return gap;
+  gap.nodes = {nodes_[i], nodes_[i + 1], nodes_[i - 1], nodes_[i + 2]};
+  gap.checks = {Nodes<3>{nodes_[i], nodes_[i - 1], nodes_[i - 2]},
+                Nodes<3>{nodes_[i + 1], nodes_[i + 2], nodes_[i + 3]}};
+  gap.checked = 2;
+  return gap;
 }
 
 template <std::size_t N>
-std::array<double, N> MadeLine::weights(const Stencil& nodes, double x) const {
+std::array<double, N> MadeLine::weights(const Nodes<N>& nodes, double x) const {
   std::array<double, N> weights;
   for (std::size_t i = 0; i < N; ++i) {
     double weight = 1.0;
@@ -141,36 +161,40 @@ std::array<double, N> MadeLine::weights(const Stencil& nodes, double x) const {
   return weights;
 }
 
-bool MadeLine::is_smooth(std::size_t from, std::size_t to, const Stencil& nodes, std::size_t hoop) const {
-  const Kind& kind = kinds_[place(from, hoop)];
-  if (kind.status == Status::failed || nodes[2] == nodes[3]) return false;
+bool MadeLine::is_smooth(const Gap& gap, std::size_t hoop) const {
+  if (gap.checked == 0) return false;
   const std::size_t each = numbers_.size();
-  const auto cubic = weights<4>(nodes, 0.5 * (x_[from] + x_[to]));
-  const auto square = weights<3>(nodes, 0.5 * (x_[from] + x_[to]));
+  const double middle = 0.5 * (x_[gap.from] + x_[gap.to]);
+  const auto cubic = weights(gap.nodes, middle);
+  std::array<std::array<double, 3>, 2> squares;
+  for (std::size_t c = 0; c < gap.checked; ++c) squares[c] = weights(gap.checks[c], middle);
+  const auto told = [&](const auto& nodes, const auto& weights, std::size_t n) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < nodes.size(); ++i) sum += weights[i] * number(nodes[i], hoop, n);
+    return sum;
+  };
+  const auto applies = [&](std::size_t n) {
+    return std::any_of(gap.nodes.begin(), gap.nodes.end(),
+                       [&](std::size_t node) { return !std::isnan(number(node, hoop, n)); });
+  };
   for (std::size_t n = 0; n < each; ++n) {
-    double better = 0.0, worse = 0.0;
-    bool applies = false;
-    for (std::size_t i = 0; i < cubic.size(); ++i) {
-      const double value = number(nodes[i], hoop, n);
-      applies = applies || value == value;
-      better += cubic[i] * value;
-      if (i < square.size()) worse += square[i] * value;
-    }
-    // NaN differs from everything.
-    if (applies && !is_alike(better, worse, spreads_[from * each + n])) return false;
+    if (!applies(n)) continue;
+    const double better = told(gap.nodes, cubic, n);
+    for (std::size_t c = 0; c < gap.checked; ++c)  // NaN differs from everything
+      if (!is_alike(better, told(gap.checks[c], squares[c], n), spreads_[gap.from * each + n])) return false;
   }
   return true;
 }
 
-void MadeLine::interpolate(std::size_t from, std::size_t to, const Stencil& nodes, std::size_t hoop) {
+void MadeLine::interpolate(const Gap& gap, std::size_t hoop) {
   const std::size_t each = numbers_.size();
-  for (std::size_t j = from + 1; j < to; ++j) {
-    Kind& kind = kinds_[place(j, hoop)] = kinds_[place(from, hoop)];
+  for (std::size_t j = gap.from + 1; j < gap.to; ++j) {
+    Kind& kind = kinds_[place(j, hoop)] = kinds_[place(gap.from, hoop)];
     kind.is_solved = false;
-    const auto cubic = weights<4>(nodes, x_[j]);
+    const auto cubic = weights(gap.nodes, x_[j]);
     for (std::size_t n = 0; n < each; ++n) {
       double& value = values_[place(j, hoop) * each + n] = 0.0;
-      for (std::size_t i = 0; i < cubic.size(); ++i) value += cubic[i] * number(nodes[i], hoop, n);
+      for (std::size_t i = 0; i < cubic.size(); ++i) value += cubic[i] * number(gap.nodes[i], hoop, n);
     }
   }
 }
@@ -203,9 +227,8 @@ void MadeLine::refine(std::span<const Design> drawings, MadeHoops& hoops, const 
     if (spreads_.empty()) measure_spreads();
     asks = false;
     for (std::size_t k = 0; k < samples_; ++k)
-      for_gaps(k, [&](std::size_t from, std::size_t to, const Stencil& nodes) {
-        if (is_smooth(from, to, nodes, k)) return;
-        asked_[place((from + to) / 2, k)] = asks = true;
+      for_gaps(k, [&](const Gap& gap) {
+        if (!is_smooth(gap, k)) asked_[place((gap.from + gap.to) / 2, k)] = asks = true;
       });
   }
 }
@@ -216,40 +239,54 @@ bool MadeLine::surprises(std::size_t drawing, std::size_t hoop) const {
   const std::size_t last = count_ - 1, from = drawing > stride ? drawing - stride : 0,
                     to = std::min(drawing + stride, last);
   const Kind &here = kinds_[place(drawing, hoop)], &around = kinds_[place(from, hoop)];
-  Stencil nodes{from, to, from, from};
+  Gap gap{.from = from, .to = to, .nodes = {from, to}};
   std::size_t filled = 2;
   const auto add = [&](std::size_t node) {
-    if (filled < nodes.size() && around.is_like(kinds_[place(node, hoop)])) nodes[filled++] = node;
+    if (filled < gap.nodes.size() && around.is_like(kinds_[place(node, hoop)])) gap.nodes[filled++] = node;
   };
   if (from > 0) add(from > stride ? from - stride : 0);
   if (to < last) add(std::min(to + stride, last));
-  if (filled < nodes.size() && to + stride < last) add(std::min(to + 2 * stride, last));
-  if (filled < nodes.size() && from > stride) add(from > 2 * stride ? from - 2 * stride : 0);
-  if (!around.is_like(kinds_[place(to, hoop)]) || filled < nodes.size()) return is_narrow(drawing, hoop);
-  if (!is_smooth(from, to, nodes, hoop)) return false;
-  if (!around.is_like(here)) return true;
-  constexpr double loose = 16.0;  // between nodes twice as far from each other
-  const auto cubic = weights<4>(nodes, x_[drawing]);
+  if (filled < gap.nodes.size() && to + stride < last) add(std::min(to + 2 * stride, last));
+  if (filled < gap.nodes.size() && from > stride) add(from > 2 * stride ? from - 2 * stride : 0);
+  if (!around.is_like(kinds_[place(to, hoop)]) || filled < gap.nodes.size()) return is_narrow(drawing, hoop);
+  gap.checks[0] = {from, to, gap.nodes[2]}, gap.checked = 1;
+  if (!is_smooth(gap, hoop)) return false;
+  return !ends_like(around, here) || !is_told(gap.nodes, drawing, hoop);
+}
+
+bool MadeLine::is_told(const Nodes<4>& nodes, std::size_t drawing, std::size_t hoop) const {
+  constexpr double loose = 16.0;  // nodes may be twice as far from each other as about a gap
+  const auto cubic = weights(nodes, x_[drawing]);
   for (std::size_t n = 0; n < numbers_.size(); ++n) {
     double told = 0.0;
     for (std::size_t i = 0; i < cubic.size(); ++i) told += cubic[i] * number(nodes[i], hoop, n);
     const double value = number(drawing, hoop, n);
     if (value == value && !is_alike(told, value, loose * spreads_[drawing * numbers_.size() + n]))
-      return true;
+      return false;
   }
-  return false;
+  return true;
 }
 
 /// Whether a solved hoop lies in a band of its kind that fits between two hoops that are solved, amid
-/// another.
+/// another, and its numbers are not what those around it say.
 bool MadeLine::is_narrow(std::size_t drawing, std::size_t hoop) const {
-  const Kind& here = kinds_[place(drawing, hoop)];
+  const auto kind_of = [&](std::size_t j) -> const Kind& { return kinds_[place(j, hoop)]; };
+  const Kind& here = kind_of(drawing);
   std::size_t first = drawing, last = drawing;
-  while (first > 0 && here.is_like(kinds_[place(first - 1, hoop)])) --first;
-  while (last + 1 < count_ && here.is_like(kinds_[place(last + 1, hoop)])) ++last;
+  while (first > 0 && here.is_like(kind_of(first - 1))) --first;
+  while (last + 1 < count_ && here.is_like(kind_of(last + 1))) ++last;
   if (first == 0 || last + 1 == count_ || last - first + 1 >= stride) return false;
-  const Kind &before = kinds_[place(first - 1, hoop)], &after = kinds_[place(last + 1, hoop)];
-  return before.is_solved && after.is_solved && before.is_like(after);
+  const Kind &before = kind_of(first - 1), &after = kind_of(last + 1);
+  if (!before.is_solved || !after.is_solved || !before.is_like(after)) return false;
+  if (!ends_like(before, here)) return true;
+  std::size_t low = first - 1, high = last + 1;
+  while (low > 0 && !kind_of(--low).is_solved)
+    ;
+  while (high + 1 < count_ && !kind_of(++high).is_solved)
+    ;
+  const bool has_nodes =
+      low < first - 1 && ends_like(kind_of(low), here) && high > last + 1 && ends_like(kind_of(high), here);
+  return !has_nodes || !is_told({first - 1, last + 1, low, high}, drawing, hoop);
 }
 
 bool MadeLine::ask_where_surprised() {
@@ -283,9 +320,7 @@ void MadeLine::solve(std::span<const Design> drawings, DrawnLine line, MadeHoops
       asked_[place(j, k)] = j == 0 || j + 1 == count_ || is_by_chance(j, k);
   refine(drawings, hoops, solve);
   while (ask_where_surprised()) refine(drawings, hoops, solve);
-  for (std::size_t k = 0; k < samples_; ++k)
-    for_gaps(
-        k, [&](std::size_t from, std::size_t to, const Stencil& nodes) { interpolate(from, to, nodes, k); });
+  for (std::size_t k = 0; k < samples_; ++k) for_gaps(k, [&](const Gap& gap) { interpolate(gap, k); });
 }
 
 void MadeLine::put(std::size_t drawing, std::size_t hoop, Outcome& outcome) const {

@@ -4,8 +4,9 @@
 ///
 /// The same hoop of each sample, made after one drawing after the other, changes smoothly but where it passes
 /// a discontinuity. Every eighth of these is solved, beginning anywhere. What lies between two of them is
-/// interpolated where the four nearest agree in status, lift-offs and phases, and where a polynomial of one
-/// degree less tells the same; else it is halved.
+/// interpolated where the four nearest agree in status and lift-offs, and where a polynomial of one degree
+/// less tells the same; else it is halved. Phases may change between the two, as where a hoop just begins to
+/// slip, if polynomials of either side tell the same, too.
 ///
 /// A band of other outcomes between two solved hoops would be passed over. But of the hoops made after a
 /// drawing one in eight is solved whatever lies around it. If such a hoop is not what would have been
@@ -37,8 +38,9 @@ DrawnLine line_of(std::span<const Design> drawings);
 /// One a thread.
 class MadeLine {
  public:
-  /// numbers: of jumps, that are asked for besides status, lift-offs and phases.
-  explicit MadeLine(std::vector<double Outcome::*> numbers) : numbers_(std::move(numbers)) {}
+  /// numbers: of jumps, that are asked for besides status and lift-offs. phases: whether these are, too.
+  explicit MadeLine(std::vector<double Outcome::*> numbers, bool phases = false)
+      : numbers_(std::move(numbers)), phases_matter_(phases) {}
 
   /// Whether so many drawings so near each other are worth interpolating.
   static bool suits(const DrawnLine& line, std::span<const Design> drawings, const MadeHoops& hoops);
@@ -65,12 +67,25 @@ class MadeLine {
              candidates == other.candidates;
     }
   };
-  /// Four solved drawings about a gap between two of them.
-  using Stencil = std::array<std::size_t, 4>;
+  /// Some solved drawings.
+  template <std::size_t N>
+  using Nodes = std::array<std::size_t, N>;
+  /// Two drawings that are solved, with none between them that is.
+  struct Gap {
+    std::size_t from, to;
+    Nodes<4> nodes{};                  ///< about it, through which a cubic tells what lies in it
+    std::array<Nodes<3>, 2> checks{};  ///< through which polynomials have to tell the same
+    std::size_t checked = 0;           ///< the number of those; 0: the nodes are none
+  };
 
   std::size_t place(std::size_t drawing, std::size_t hoop) const { return drawing * samples_ + hoop; }
   double number(std::size_t drawing, std::size_t hoop, std::size_t n) const {
     return values_[place(drawing, hoop) * numbers_.size() + n];
+  }
+  /// Whether two kinds differ in nothing that is asked for.
+  bool ends_like(Kind a, const Kind& b) const {
+    if (!phases_matter_) a.phases = b.phases;
+    return a.is_like(b);
   }
   /// Solved by chance, whatever lies around.
   bool is_by_chance(std::size_t drawing, std::size_t hoop) const;
@@ -79,19 +94,24 @@ class MadeLine {
   bool ask_where_surprised();
   bool surprises(std::size_t drawing, std::size_t hoop) const;
   bool is_narrow(std::size_t drawing, std::size_t hoop) const;
+  /// Whether the numbers of a solved hoop are about what the cubic through these nodes says.
+  bool is_told(const Nodes<4>& nodes, std::size_t drawing, std::size_t hoop) const;
   void measure_spreads();
   void solve_asked(std::span<const Design> drawings, MadeHoops& hoops, const Solver& solve);
   void keep(std::size_t at, const Outcome& outcome);
-  /// The gap after a solved drawing of a hoop: the next one that is solved. gap(from, to, stencil).
+  /// Calls take(gap) for each gap of a hoop.
   template <class F>
-  void for_gaps(std::size_t hoop, const F& gap);
-  bool is_smooth(std::size_t from, std::size_t to, const Stencil& nodes, std::size_t hoop) const;
-  void interpolate(std::size_t from, std::size_t to, const Stencil& nodes, std::size_t hoop);
-  /// Of the polynomial through the first so many nodes.
+  void for_gaps(std::size_t hoop, const F& take);
+  /// That after the i-th of nodes_.
+  Gap gap_after(std::size_t i, std::size_t hoop) const;
+  bool is_smooth(const Gap& gap, std::size_t hoop) const;
+  void interpolate(const Gap& gap, std::size_t hoop);
+  /// Of the polynomial through some nodes, at x.
   template <std::size_t N>
-  std::array<double, N> weights(const Stencil& nodes, double x) const;
+  std::array<double, N> weights(const Nodes<N>& nodes, double x) const;
 
   std::vector<double Outcome::*> numbers_;
+  bool phases_matter_;
   std::size_t samples_ = 0, count_ = 0;
   std::vector<double> x_;  // of each drawing
   std::vector<Kind> kinds_;

@@ -47,8 +47,13 @@ ScatterSolver::ScatterSolver(const Scatter& scatter, const std::optional<Body>& 
       numbers.push_back(quantity->member);
   };
   for (const Field* field : quantities) add(field);
-  for (const Goal& goal : goals) add(find_field(goal.field));
-  line_.emplace(std::move(numbers));
+  bool phases = false;
+  for (const Goal& goal : goals) {
+    const Field* field = find_field(goal.field);
+    add(field);
+    phases = phases || std::holds_alternative<Word>(field->source);
+  }
+  line_.emplace(std::move(numbers), phases);
 }
 
 double ScatterSolver::tell(const OfMade& what) {

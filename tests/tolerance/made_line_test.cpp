@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <random>
+#include <string_view>
 
 #include "support/designs.hpp"
 #include "support/scattered.hpp"
@@ -123,6 +124,85 @@ TEST(MadeLines, NeedOneHoopOfEightWhereNothingBreaks) {
   for (std::size_t j = 0; j < 81; ++j)
     EXPECT_NEAR(both.interpolated.column(*find_field("jump_height_mean"))[j],
                 both.exact.column(*find_field("jump_height_mean"))[j], 1e-13);
+}
+
+/// Jumps whose phases change at a slope of 0.44, and their heights with them: beyond it by `beyond`(slope -
+/// 0.44).
+template <class F>
+Solver changing_phases(const F& beyond) {
+  return [=](std::span<const Design> designs, std::span<Outcome> outcomes) {
+    for (std::size_t i = 0; i < designs.size(); ++i) {
+      const double past = designs[i].slope - 0.44;
+      outcomes[i] = {};
+      outcomes[i].status = Status::jumped, outcomes[i].phase_sequence = past > 0.0 ? 2 : 1;
+      outcomes[i].jump_height = 0.5 + past + 1e-3 * past * past + (past > 0.0 ? beyond(past) : 0.0);
+    }
+  };
+}
+
+TEST(MadeLines, NeedOneHoopOfEightWherePhasesChangeButNumbersDoNot) {
+  const Solver smooth = changing_phases([](double) { return 0.0; });
+  Scatter scatter{{{"slope", Spread::Law::normal, 0.01}}, 256};
+  const auto drawings = line_from({.slope = 0.4}, &Design::slope, 1e-3, 81);
+  EXPECT_LT(told(scatter, drawings, smooth).solved, 1.0 / MadeLine::stride + 0.03);
+}
+
+TEST(MadeLines, SolveHoopsWhoseNumbersBreakWherePhasesChange) {
+  const Scatter scatter{{{"slope", Spread::Law::normal, 0.002}}, 1024};
+  const auto drawings = line_from({.slope = 0.4}, &Design::slope, 1e-3, 81);
+  const auto compare = [&](const BothWays& both, const char* what) {
+    for (const char* name : {"yield", "jump_height_mean", "jump_height_q05"}) {
+      const auto exact = both.exact.column(*find_field(name)),
+                 made = both.interpolated.column(*find_field(name));
+      // A hundredth of the standard error of a mean, 0.002 / 32; one hoop of 1,024.
+      const double most = name == std::string_view("yield") ? 1e-3 : 6e-7;
+      for (std::size_t j = 0; j < exact.size(); ++j)
+        EXPECT_NEAR(made[j], exact[j], most) << what << name << j;
+    }
+  };
+  compare(told(scatter, drawings, changing_phases([](double past) { return -1.5 * past; })), "kink ");
+  compare(told(scatter, drawings, changing_phases([](double) { return -0.05; })), "step ");
+}
+
+TEST(MadeLines, SolveAllHoopsAroundNarrowPhasesOnlyIfTheirNumbersAreOthers) {
+  // A band two drawings wide. Only hoops up to `island` from its middle jump.
+  const auto banded = [](double height, double island) {
+    return Solver([=](std::span<const Design> designs, std::span<Outcome> outcomes) {
+      for (std::size_t i = 0; i < designs.size(); ++i) {
+        const double away = std::abs(designs[i].slope - 0.44);
+        outcomes[i] = {};
+        outcomes[i].status = away < island ? Status::jumped : Status::no_jump;
+        outcomes[i].phase_sequence = away < 1e-3 ? 2 : away < island ? 1 : 3;
+        if (away < island) outcomes[i].jump_height = (away < 1e-3 ? height : 1.0) + designs[i].slope;
+      }
+    });
+  };
+  const Scatter scatter{{{"slope", Spread::Law::normal, 0.002}}, 1024};
+  const auto drawings = line_from({.slope = 0.4}, &Design::slope, 1e-3, 81);
+  EXPECT_LT(told(scatter, drawings, banded(1.0, 1.0)).solved, 1.0 / MadeLine::stride + 0.03);
+  for (const double island : {1.0, 0.01}) {  // which is too small for nodes of eight drawings on both sides
+    const BothWays both = told(scatter, drawings, banded(0.0, island));
+    const auto exact = both.exact.column(*find_field("yield")),
+               made = both.interpolated.column(*find_field("yield")),
+               error = both.interpolated.column(*find_field("yield_error"));
+    for (std::size_t j = 0; j < exact.size(); ++j)
+      EXPECT_NEAR(made[j], exact[j], error[j]) << island << ' ' << j;
+    EXPECT_LT(exact[40], 0.7) << "else there is nothing to pass over";
+  }
+}
+
+TEST(MadeLines, TellPhasesWhereThatIsTheGoal) {
+  const Solver smooth = changing_phases([](double) { return 0.0; });
+  const Scatter scatter{{{"slope", Spread::Law::normal, 0.01}}, 256};
+  const std::vector<Goal> goals{{"phase_sequence", 2.0, 2.0}};
+  const std::vector<const Field*> fields{find_field("yield")};
+  MadeColumns exact(fields), interpolated(fields);
+  const auto drawings = line_from({.slope = 0.4}, &Design::slope, 1e-3, 81);
+  for (const bool interpolates : {false, true})
+    ScatterSolver(scatter, {}, {}, points_of(scatter), goals, {}, smooth, interpolates)
+        .solve(drawings, interpolates ? interpolated : exact);
+  for (std::size_t j = 0; j < drawings.size(); ++j)
+    EXPECT_EQ(interpolated.column(*fields[0])[j], exact.column(*fields[0])[j]) << j;
 }
 
 TEST(MadeLines, InterpolateWhatAppliesWithoutAJumpAsWell) {
