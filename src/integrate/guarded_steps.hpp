@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "numerics/events.hpp"
@@ -36,8 +37,8 @@ class GuardedSteps {
   /// Begins at a state. sample(g, y): the value and the rate in time of guard g, of so many.
   template <class SampleOf>
   void begin(const State<D>& at, std::size_t guards, const SampleOf& sample) {
-    now_.clear();
-    for (std::size_t g = 0; g < guards; ++g) now_.push_back(sample(g, at));
+    now_.resize(guards);
+    sample_all(sample, at, now_);
     if (falls_.size() < guards) falls_.resize(guards);
   }
 
@@ -49,12 +50,16 @@ class GuardedSteps {
     if (!method.advance()) return Stepped::no_step;
     const Step<D>& step = method.step();
     const double turned = std::abs(angle(step.y1) - angle(step.y0));
-    const int count = 1 + static_cast<int>(std::min(turned * (looks / std::numbers::pi), 1000.0));
+    // In this order the least of 1,000 and of no number is 1,000.
+    const auto count = 2 + static_cast<std::size_t>(std::min(1000.0, turned * (looks / std::numbers::pi)));
+    look(step, count, sample);
     events_.clear();
     for (std::size_t g = 0; g < now_.size(); ++g) {
-      now_[g] = find_falls(
-          step, count, now_[g], [&](const State<D>& y) { return sample(g, y); },
+      const std::span<const Sample<double>> seen = std::span(seen_).subspan(g * count, count);
+      find_falls(
+          step, now_[g], seen, [&](const State<D>& y) { return sample(g, y); },
           [&](double tau, State<D>& y) { return method.retake(tau, y); }, falls_[g]);
+      now_[g] = seen.back();
       if (falls_[g].failed) return Stepped::no_event;
       for (const Fall<D>& fall : falls_[g].falls) events_.push_back({fall.tau, g, fall.state});
     }
@@ -72,7 +77,28 @@ class GuardedSteps {
   Sample<double>& now(std::size_t guard) { return now_[guard]; }
 
  private:
-  std::vector<Sample<double>> now_;
+  /// All guards at a state; at once, where sample.all(y, guards) tells them for less than one by one.
+  template <class SampleOf>
+  static void sample_all(const SampleOf& sample, const State<D>& y, std::span<Sample<double>> guards) {
+    if constexpr (requires { sample.all(y, guards); }) {
+      sample.all(y, guards);
+    } else {
+      for (std::size_t g = 0; g < guards.size(); ++g) guards[g] = sample(g, y);
+    }
+  }
+  /// Sees every guard at so many looks of the step.
+  template <class SampleOf>
+  void look(const Step<D>& step, std::size_t count, const SampleOf& sample) {
+    seen_.resize(now_.size() * count);
+    at_look_.resize(now_.size());
+    for (std::size_t k = 0; k < count; ++k) {
+      sample_all(sample, state_at_look(step, k + 1, count), at_look_);
+      for (std::size_t g = 0; g < now_.size(); ++g) seen_[g * count + k] = at_look_[g];
+    }
+  }
+
+  std::vector<Sample<double>> now_, at_look_;
+  std::vector<Sample<double>> seen_;  // of one guard after the other
   std::vector<Falls<D>> falls_;
   std::vector<Event<D>> events_;
 };

@@ -4,6 +4,7 @@
 #include <gsl/gsl_errno.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "hoop/flight_search.hpp"
@@ -75,17 +76,22 @@ Outcome Integration<Model>::solve(Start start, const Design& design, ContactStat
 }
 
 template <class Model>
-Sample<double> Integration<Model>::normal_force_at(const State<D>& y) {
-  ++system_.evaluations;
-  return system_.model.normal_force(y);
-}
+struct Integration<Model>::GuardsOf {
+  System& system;
+  const Rolling& rolling;
 
-template <class Model>
-Sample<double> Integration<Model>::spin_at(const State<D>& y) {
-  ++system_.evaluations;
-  const Model& model = system_.model;
-  return {model.spin(y), angular_acceleration(model.hoop, trig(model.angle(y)), model.spin(y))};
-}
+  void all(const State<D>& y, std::span<Sample<double>> guards) const {
+    ++system.evaluations;
+    const auto [normal_force, spin] = system.model.watched(y);
+    guards[lift_off_guard] = normal_force;
+    guards[turn_guard] = {rolling.way * spin.value, rolling.way * spin.rate};
+  }
+  Sample<double> operator()(std::size_t guard, const State<D>& y) const {
+    std::array<Sample<double>, guard_count> guards;
+    all(y, guards);
+    return guards[guard];
+  }
+};
 
 /// The method's own state inside the step.
 template <class Model>
@@ -215,13 +221,6 @@ double Integration<Model>::end_of_way(Rolling& rolling) {
   return part(step.h, model.angle(step.y1) - release);
 }
 
-template <class Model>
-Sample<double> Integration<Model>::guard_at(const Rolling& rolling, std::size_t guard, const State<D>& y) {
-  if (guard == lift_off_guard) return normal_force_at(y);
-  const Sample<double> spin = spin_at(y);
-  return {rolling.way * spin.value, rolling.way * spin.rate};
-}
-
 /// The spin falls to zero on the way down, and rises to it on the way up: it is seen so that it falls.
 template <class Model>
 void Integration<Model>::take_way(Rolling& rolling) {
@@ -237,8 +236,7 @@ bool Integration<Model>::step_on(Rolling& rolling) {
   take_way(rolling);
   // A look every 22.5 degrees: the normal force swings once or twice a revolution.
   const Stepped stepped = steps_.take(
-      *this, [&](const State<D>& y) { return system_.model.angle(y); }, 8.0,
-      [&](std::size_t guard, const State<D>& y) { return guard_at(rolling, guard, y); });
+      *this, [&](const State<D>& y) { return system_.model.angle(y); }, 8.0, GuardsOf{system_, rolling});
   const std::vector<Fall<D>>& turns = steps_.falls(turn_guard).falls;
   // A step in which it turns round twice is too long.
   const bool turned_twice = turns.size() > 1 || (!turns.empty() && !has_fallen(steps_.now(turn_guard)));
@@ -270,8 +268,7 @@ Outcome Integration<Model>::roll(Start start, const Design& design, const Contac
   const State<D> release = system_.model.rolling(from.angle, from.spin);
   Rolling rolling{from, scene, observer, rolling_energy(system_.model.hoop, from.angle, from.spin),
                   two_pi * scene.runway};
-  steps_.begin(release, guard_count,
-               [&](std::size_t guard, const State<D>& y) { return guard_at(rolling, guard, y); });
+  steps_.begin(release, guard_count, GuardsOf{system_, rolling});
   if (steps_.now(lift_off_guard).value <= 0.0) {
     if (start == Start::release) rolling.outcome.status = Status::airborne_at_release;
     if (start == Start::release || take(rolling, {from.time, from.angle, from.spin}, 0.0))

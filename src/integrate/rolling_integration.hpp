@@ -76,10 +76,12 @@ class Integration {
     Outcome outcome{};
   };
 
+  /// Samples the guards of a design.
+  struct GuardsOf;
+
   Outcome roll(Start start, const Design& design, const ContactState<double>& from, const Scene& scene,
                const Observer& observer);
   bool take(Rolling& rolling, const LiftOff<double>& lift_off, double tau);
-  Sample<double> guard_at(const Rolling& rolling, std::size_t guard, const State<D>& y);
   void take_way(Rolling& rolling);
   bool step_on(Rolling& rolling);
   bool take_lift_offs(Rolling& rolling, double end);
@@ -91,8 +93,6 @@ class Integration {
   bool advance();
   const Step<D>& step() const { return integrator_.step(); }
   bool retake(double tau, State<D>& y);
-  Sample<double> normal_force_at(const State<D>& y);
-  Sample<double> spin_at(const State<D>& y);
 
   IntegrationOptions options_;
   System system_;

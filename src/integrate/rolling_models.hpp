@@ -3,8 +3,7 @@
 /// events and its Jacobian need.
 ///
 /// A model has a dimension, a hoop, whether it knows its Jacobian and whether steps are projected; the state
-/// at an angle and a spin and back; the state's derivative; and the normal force with its rate. A new hoop is
-/// set.
+/// at an angle and a spin and back; the state's derivative; and what its guards watch. A new hoop is set.
 #pragma once
 
 #include <algorithm>
@@ -15,6 +14,11 @@
 #include "numerics/events.hpp"
 
 namespace leapmap {
+
+/// With their rates in time.
+struct Watched {
+  Sample<double> normal_force, spin;
+};
 
 /// (10) for the angle alone: state (phi, w).
 struct OneCoordinate {
@@ -37,11 +41,11 @@ struct OneCoordinate {
     dfdy[0] = 0.0, dfdy[1] = 1.0;
     dfdy[2] = gradient.by_angle, dfdy[3] = gradient.by_spin;
   }
-  Sample<double> normal_force(const Y& y) const {
+  Watched watched(const Y& y) const {
     const Trig<double> phi = trig(y[0]);
     const double acceleration = angular_acceleration(hoop, phi, y[1]);
-    return {leapmap::normal_force(hoop, phi, y[1], acceleration),
-            normal_force_rate(hoop, phi, y[1], acceleration)};
+    return {{normal_force(hoop, phi, y[1], acceleration), normal_force_rate(hoop, phi, y[1], acceleration)},
+            {y[1], acceleration}};
   }
 };
 
@@ -63,9 +67,9 @@ struct Multipliers : ThreeCoordinates {
     const auto acceleration = this->acceleration(state);
     for (std::size_t i = 0; i < 3; ++i) f[i] = y[3 + i], f[3 + i] = acceleration[i];
   }
-  Sample<double> normal_force(const Y& y) const {
+  Watched watched(const Y& y) const {
     const ConstrainedMotion now = motion(y);
-    return {now.normal_force, now.normal_force_rate};
+    return {{now.normal_force, now.normal_force_rate}, {y[5], angular_acceleration(hoop, trig(y[2]), y[5])}};
   }
 };
 

@@ -8,7 +8,7 @@
 ///
 /// Pairs. Two falls and rises inside one step leave equal signs at its ends, and are found by looking at the
 /// extrema between them. The ends' values and slopes are the method's own, so a single extremum is never
-/// missed; `looks` interior points, taken from a cubic Hermite interpolant, catch steps that hold more than
+/// missed; looks at interior points, taken from a cubic Hermite interpolant, catch steps that hold more than
 /// one. The interpolant only says where to look. Wherever it is not clear of zero, the method itself retakes
 /// the part of the step up to that point and its value decides, and every reported time is polished on
 /// retaken steps.
@@ -18,6 +18,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "numerics/root.hpp"
@@ -78,16 +79,28 @@ struct Falls {
   std::vector<Knot> knots;
 };
 
+/// When the look of that number is, of so many that end with the step.
+template <std::size_t D>
+double time_of_look(const Step<D>& step, std::size_t number, std::size_t count) {
+  return number < count ? step.h * static_cast<double>(number) / static_cast<double>(count) : step.h;
+}
+
+/// The state that a look sees: inside the step the interpolant's.
+template <std::size_t D>
+State<D> state_at_look(const Step<D>& step, std::size_t number, std::size_t count) {
+  return number < count ? interpolate(step, time_of_look(step, number, count)) : step.y1;
+}
+
 /// Finds the falls of guard in the step. guard(state) returns value and time derivative; retake(tau, state)
 /// puts the method's own state at tau into state and returns false if it cannot; `first` is the guard at the
-/// step's start. Returns the guard at the step's end, for the next step.
+/// step's start, seen[k - 1] at look k of seen.size().
 template <std::size_t D, class Guard, class Retake>
-Sample<double> find_falls(const Step<D>& step, int looks, const Sample<double>& first, const Guard& guard,
-                          const Retake& retake, Falls<D>& out) {
+void find_falls(const Step<D>& step, const Sample<double>& first, std::span<const Sample<double>> seen,
+                const Guard& guard, const Retake& retake, Falls<D>& out) {
   out.falls.clear();
   out.near_misses.clear();
   out.failed = false;
-  const Sample<double> last = guard(step.y1);
+  const Sample<double>& last = seen.back();
 
   const auto guessed = [&](double tau) { return guard(interpolate(step, tau)); };
   const auto retaken = [&](double tau) -> Sample<double> {
@@ -110,9 +123,9 @@ Sample<double> find_falls(const Step<D>& step, int looks, const Sample<double>& 
   out.knots.assign(1, {0.0, has_fallen(first)});
   Sample<double> left = first;
   double left_tau = 0.0;
-  for (int look = 1; look <= looks + 1; ++look) {
-    const double right_tau = look <= looks ? step.h * look / (looks + 1) : step.h;
-    const Sample<double> right = look <= looks ? guessed(right_tau) : last;
+  for (std::size_t look = 1; look <= seen.size(); ++look) {
+    const double right_tau = time_of_look(step, look, seen.size());
+    const Sample<double>& right = seen[look - 1];
     reach = std::max(reach, std::abs(right.value));
     if ((left.rate < 0.0) != (right.rate < 0.0)) {
       const bool minimum = left.rate < 0.0;
@@ -146,7 +159,7 @@ Sample<double> find_falls(const Step<D>& step, int looks, const Sample<double>& 
     left_tau = right_tau;
   }
   out.knots.push_back({step.h, has_fallen(last)});
-  if (out.failed) return last;
+  if (out.failed) return;
 
   for (std::size_t i = 1; i < out.knots.size(); ++i) {
     const auto from = out.knots[i - 1], to = out.knots[i];
@@ -160,7 +173,6 @@ Sample<double> find_falls(const Step<D>& step, int looks, const Sample<double>& 
         !out.failed && retake(fall.tau, fall.state) && std::abs(guard(fall.state).value) <= 0.01 * reach;
     found ? out.falls.push_back(fall) : void(out.failed = true);
   }
-  return last;
 }
 
 }  // namespace leapmap

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
 #include "referee/largest.hpp"
 #include "referee/robot.hpp"
@@ -33,6 +34,37 @@ StepControl control_of(const Scene& scene, double tolerance) {
 
 }  // namespace
 
+/// A guard is a function of the state alone: its rate is its change along the motion's straight continuation.
+struct Referee::Sampled {
+  const Body& body;
+  const Mode& mode;
+  const std::vector<Guard>& guards;
+  double unit_of_spin;
+
+  void all(const Y& y, std::span<Sample<double>> samples) const {
+    sample(y, [&](const auto& of) { std::ranges::transform(guards, samples.begin(), of); });
+  }
+  Sample<double> operator()(std::size_t number, const Y& y) const {
+    Sample<double> one;
+    sample(y, [&](const auto& of) { one = of(guards[number]); });
+    return one;
+  }
+
+ private:
+  /// take(of): of(guard) is its sample.
+  template <class Take>
+  void sample(const Y& y, const Take& take) const {
+    const Motion at = motion_of(y);
+    const Y f = derivative(body, mode, at);
+    const double d = 1e-5 / (std::abs(at.spin) + unit_of_spin);
+    Y ahead = y, behind = y;
+    for (std::size_t i = 0; i < y.size(); ++i) ahead[i] += d * f[i], behind[i] -= d * f[i];
+    take([&, ahead = motion_of(ahead), behind = motion_of(behind)](const Guard& guard) {
+      return Sample<double>{guard(at), (guard(ahead) - guard(behind)) / (2.0 * d)};
+    });
+  }
+};
+
 Referee::Referee(const Scene& scene, double tolerance, long most_steps)
     : scene_(scene),
       tolerance_(tolerance),
@@ -52,17 +84,7 @@ bool Referee::follow(const Mode& mode, const std::vector<Guard>& guards,
                      const std::function<bool(std::size_t)>& happens) {
   system_.mode = mode;
   const double began = time_;
-  // A guard is a function of the state alone: its rate is its change along the motion's straight
-  // continuation.
-  const auto sample = [&](std::size_t number, const Y& y) {
-    const Guard& guard = guards[number];
-    const Motion at = motion_of(y);
-    const Y f = derivative(system_.body, mode, at);
-    const double d = 1e-5 / (std::abs(at.spin) + 1.0 / second_);
-    Y ahead = y, behind = y;
-    for (std::size_t i = 0; i < y.size(); ++i) ahead[i] += d * f[i], behind[i] -= d * f[i];
-    return Sample<double>{guard(at), (guard(motion_of(ahead)) - guard(motion_of(behind))) / (2.0 * d)};
-  };
+  const Sampled sample{system_.body, mode, guards, 1.0 / second_};
   const Y start = state_of(at_);
   guarded_.begin(start, guards.size(), sample);
   if (!integrator_.start(start, 0.01 / (1.0 / second_ + std::abs(at_.spin)))) return false;

@@ -33,6 +33,7 @@ class Referee {
  private:
   /// Falls through zero where something happens.
   using Guard = std::function<double(const Motion&)>;
+  struct Sampled;
   struct System {
     Body body;
     Mode mode;
