@@ -25,7 +25,7 @@ Motion flying(const Body& body, const Motion& lift_off, double time) {
   const double a = body.arm(), w = lift_off.spin, spin = w + body.turn * time;
   const double phi = lift_off.phi + w * time + body.turn * time * time / 2;
   const double s0 = std::sin(lift_off.phi), c0 = std::cos(lift_off.phi), s = std::sin(phi), c = std::cos(phi);
-  const double along = body.g * std::sin(body.slope), across = -body.g * std::cos(body.slope);
+  const double along = body.g_along, across = -body.g_across;
   // of the centre of mass, (x - a sin phi, y - a cos phi)
   const double x_rate = lift_off.x_rate - a * c0 * w + along * time;
   const double y_rate = lift_off.y_rate + a * s0 * w + across * time;

@@ -14,7 +14,7 @@ using Vector = Eigen::Matrix<double, 5, 1>;  // (x'', y'', phi'', lambda_f, lamb
 using Matrix = Eigen::Matrix<double, 5, 5>;
 
 Matrix equations(const Body& body, const Mode& mode, double phi) {
-  const auto& [m, m_p, R, L, I, g, slope, motor, resisting, turn] = body;
+  const auto& [m, m_p, R, L, I, g, g_along, g_across, motor, resisting, turn] = body;
   const double s = std::sin(phi), c = std::cos(phi);
   Matrix A;
   A << m + m_p, 0, -m_p * L * c, -1, 0,                  // (7)
@@ -43,7 +43,7 @@ Body body_of(const Design& design, const Scene& scene) {
   body.L = design.offset_ratio * body.R;
   body.I = design.inertia_factor * body.m * body.R * body.R;
   body.g = scene.gravity;
-  body.slope = design.slope;
+  body.g_along = body.g * std::sin(design.slope), body.g_across = body.g * std::cos(design.slope);
   body.motor = design.drive_torque * body.mass() * body.g * body.R;
   body.resisting = design.resisting_torque * body.mass() * body.g * body.R;
   if (scene.motor_in_flight && body.motor != 0.0) body.turn = forces_of(body, {Mode::flies}, {}).phi;
@@ -52,8 +52,8 @@ Body body_of(const Design& design, const Scene& scene) {
 
 /// What gravity and the motor turn a hoop at rest with, about the contact [N m].
 double moment(const Body& body, double phi) {
-  return body.motor + body.mass() * body.g * body.R * std::sin(body.slope) -
-         body.m_p * body.g * body.L * std::sin(body.slope + phi);
+  return body.motor + body.mass() * body.R * body.g_along -
+         body.m_p * body.L * (body.g_along * std::cos(phi) + body.g_across * std::sin(phi));
 }
 
 /// The torque of the bearing: against the rotation, at rest against the moment, and no larger than that.
@@ -64,13 +64,13 @@ double resistance(const Body& body, const Mode& mode, const Motion& at) {
 }
 
 Forces forces_of(const Body& body, const Mode& mode, const Motion& at) {
-  const auto& [m, m_p, R, L, I, g, slope, motor, resisting, turn] = body;
+  const auto& [m, m_p, R, L, I, g, g_along, g_across, motor, resisting, turn] = body;
   const double s = std::sin(at.phi), c = std::cos(at.phi), w2 = at.spin * at.spin;
   const Eigen::RowVector3d along{m + m_p, 0.0, -m_p * L * c}, upwards{0.0, m + m_p, m_p * L * s},
       turning{-m_p * L * c, m_p * L * s, I + m_p * L * L};  // of (7) to (9), by x'', y'' and phi''
-  const Eigen::Vector3d loads{(m + m_p) * g * std::sin(slope) - m_p * w2 * L * s,
-                              -(m + m_p) * g * std::cos(slope) - m_p * w2 * L * c,
-                              motor - resistance(body, mode, at) - m_p * g * L * std::sin(slope + at.phi)};
+  const Eigen::Vector3d loads{(m + m_p) * g_along - m_p * w2 * L * s,
+                              -(m + m_p) * g_across - m_p * w2 * L * c,
+                              motor - resistance(body, mode, at) - m_p * L * (g_along * c + g_across * s)};
   // By (7) lambda_f is along z - loads[0], by (8) lambda_n is upwards z - loads[1]. Three equations are left,
   // which take far less time than all five.
   Eigen::Matrix3d A;
@@ -96,11 +96,12 @@ Forces forces_of(const Body& body, const Mode& mode, const Motion& at) {
 }
 
 bool rests(const Body& body, const Motion& at) {
-  const auto& [m, m_p, R, L, I, g, slope, motor, resisting, turn] = body;
-  const double of_weight = (m + m_p) * g * R * std::sin(slope), of_mass = m_p * g * L;
+  const auto& [m, m_p, R, L, I, g, g_along, g_across, motor, resisting, turn] = body;
+  const double of_weight = (m + m_p) * R * g_along, of_mass = m_p * L;
+  const double tangential = g_along * std::cos(at.phi) + g_across * std::sin(at.phi);
   const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * (1.0 + std::abs(at.phi));
-  return std::abs(motor + of_weight - of_mass * std::sin(slope + at.phi)) <=
-             resisting + rounding * (std::abs(motor) + std::abs(of_weight) + of_mass) &&
+  return std::abs(motor + of_weight - of_mass * tangential) <=
+             resisting + rounding * (std::abs(motor) + std::abs(of_weight) + of_mass * g) &&
          std::abs(at.spin) <= rounding * std::sqrt(g / R);
 }
 
@@ -110,14 +111,14 @@ double sliding_determinant(const Body& body, const Mode& mode, const Motion& at)
 }
 
 double energy(const Body& body, const Motion& at) {
-  const auto& [m, m_p, R, L, I, g, slope, motor, resisting, turn] = body;
+  const auto& [m, m_p, R, L, I, g, g_along, g_across, motor, resisting, turn] = body;
   const double w = at.spin, speed2 = at.x_rate * at.x_rate + at.y_rate * at.y_rate;
   const double kinetic = 0.5 * m_p *
                              (speed2 + L * L * w * w +
                               2.0 * w * L * (at.y_rate * std::sin(at.phi) - at.x_rate * std::cos(at.phi))) +
                          0.5 * m * speed2 + 0.5 * I * w * w;
-  return kinetic + (m + m_p) * g * (at.y * std::cos(slope) - at.x * std::sin(slope)) -
-         m_p * g * L * std::cos(slope + at.phi);
+  return kinetic + (m + m_p) * (at.y * g_across - at.x * g_along) -
+         m_p * L * (g_across * std::cos(at.phi) - g_along * std::sin(at.phi));
 }
 
 Landed land_without_slip(const Body& body, const Motion& before) {

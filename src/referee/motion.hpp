@@ -18,7 +18,8 @@ struct Body {
   double R, L;          ///< [m]
   double I;             ///< of the bare hoop about its centre [kg m^2]
   double g;             ///< [m/s^2]
-  double slope;         ///< [rad]
+  double g_along;       ///< of it along the plane, downhill [m/s^2]
+  double g_across;      ///< and across, into the plane [m/s^2]
   double motor;         ///< torque on the hoop [N m]
   double resisting;     ///< torque against the rotation in contact [N m]
   double turn;          ///< what the motor makes of phi'' in flight [rad/s^2]; 0: it idles there

@@ -24,7 +24,7 @@ double free_rise(const Body& body, const Motion& at) { return forces_of(body, {M
 double hold(const Body& body, const Motion& at, double mu, double sign) {
   const Forces forces = forces_of(body, {Mode::rolls}, at);
   const double slack = rounding * (mu * std::abs(forces.normal) + std::abs(forces.friction) +
-                                   body.mass() * body.g * std::abs(std::sin(body.slope)));
+                                   body.mass() * std::abs(body.g_along));
   return mu * forces.normal - sign * forces.friction + slack;
 }
 
