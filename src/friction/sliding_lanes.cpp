@@ -93,11 +93,13 @@ auto SlidingLanes<T>::first_events(const Panel& panel, const T& runway, const T&
   const std::array<const typename Panels::Course*, 4> courses{&panel.free_force, &panel.slip, &panel.travel,
                                                               &panel.travel};
   const std::array<T, 4> offsets{zero, zero, runway, runway}, factors{one, direction, -one, one};
+  PanelExtent<T> of_course;
   for (std::size_t g = 0; g < guards.size(); ++g) {
     const auto& course = *courses[g];
     const T &offset = offsets[g], &factor = factors[g];
-    const PanelExtent<T> extent =
-        extent_of<T, nodes>(course.value, course.rate, course.start, course.end).of(offset, factor);
+    if (g == 0 || courses[g] != courses[g - 1])
+      of_course = extent_of<T, nodes>(course.value, course.rate, course.start, course.end);
+    const PanelExtent<T> extent = of_course.of(offset, factor);
     const MaskOf<T> near = asked & !is_clear_of_zero(grid, extent);
     if (!any(near)) continue;
     typename Panels::Values values, rates;

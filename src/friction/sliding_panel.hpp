@@ -114,8 +114,8 @@ class SlidingPanels {
     ContactState<S> state;
     Mask is_sharp;
   };
-  /// The state at a place in (0, 1] of a panel by angle that is solved. It loses digits beside the panel's
-  /// start, and where the spin is small against those at its ends.
+  /// The state at a place in (0, 1] of a panel by angle that is solved. It loses digits beside the start of a
+  /// panel that lasts far longer than all before it, and where the spin is small against those at its ends.
   Inside state_at(const Slide& slide, const ContactState<S>& from, const Stretch& stretch, const Panel& panel,
                   const S& place) const;
   /// Solves a panel of that duration. It has no growth and nothing driven; where it is indeterminate only

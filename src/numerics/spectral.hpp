@@ -146,9 +146,24 @@ struct SpectralPanel {
   /// A bound of f's fourth derivative: that of a Legendre polynomial is largest at the panel's ends.
   S fourth_derivative_bound(const Values& f) const {
     using std::abs;
-    const Values coefficients = legendre_coefficients(f);
     T bound(Number(0));
-    for (std::size_t k = 0; k < n; k += width) bound += times(fourth.data() + k, T(abs(at(coefficients, k))));
+    if constexpr (width > 1) {
+      const Values coefficients = product(expansion, f);
+      for (std::size_t k = 0; k < n; k += width)
+        bound += times(fourth.data() + k, T(abs(at(coefficients, k))));
+    } else {
+      const Folded folded = fold(f);
+      for (std::size_t first = 0; first < n; first += 2 * rows) {
+        std::array<S, 2 * rows> coefficients;
+        coefficients.fill(S(Number(0)));
+        for (std::size_t j = 0; j < half; ++j)
+          for (std::size_t k = 0; k < 2 * rows; ++k)
+            coefficients[k] +=
+                times(&expansion[j][first + k], k % 2 == 0 ? folded.sum[j] : folded.difference[j]);
+        for (std::size_t k = 0; k < 2 * rows; ++k)
+          bound += times(fourth.data() + first + k, S(abs(coefficients[k])));
+      }
+    }
     return sum(bound);
   }
   /// The larger of f's last two Legendre coefficients: about the error of values between the nodes, and the
@@ -193,23 +208,6 @@ struct SpectralPanel {
   }
   ValueOf<S> tail(const Folded& f) const {
     return larger(largest_part(dot(last_but_one, f.sum)), largest_part(dot(last, f.difference)));
-  }
-  Values legendre_coefficients(const Values& f) const {
-    if constexpr (width > 1) {
-      return product(expansion, f);
-    } else {
-      const Folded folded = fold(f);
-      Values coefficients;
-      for (std::size_t first = 0; first < n; first += 2 * rows) {
-        std::array<S, 2 * rows> sums;
-        sums.fill(S(Number(0)));
-        for (std::size_t j = 0; j < half; ++j)
-          for (std::size_t k = 0; k < 2 * rows; ++k)
-            sums[k] += times(&expansion[j][first + k], k % 2 == 0 ? folded.sum[j] : folded.difference[j]);
-        std::copy(sums.begin(), sums.end(), coefficients.begin() + static_cast<std::ptrdiff_t>(first));
-      }
-      return coefficients;
-    }
   }
   /// The sum of the matrix's columns, column j times f[j].
   static Values product(const std::array<Numbers, n>& columns, const Values& f) {
