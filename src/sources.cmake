@@ -182,6 +182,7 @@ set(LEAPMAP_SOURCES
   src/sweep/map_file.cpp
   src/sweep/retry.cpp
   src/sweep/sweep.cpp
+  src/tolerance/drawn_line.cpp
   src/tolerance/made_hoops.cpp
   src/tolerance/made_line.cpp
   src/tolerance/made_sample.cpp

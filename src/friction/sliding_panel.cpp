@@ -245,9 +245,9 @@ auto SlidingPanels<S>::state_at(const Slide& slide, const ContactState<S>& from,
                                 const Panel& panel, const S& place) const -> Inside {
   using std::exp, std::sqrt;
   const S beside(0.1), small(0.01);
-  // Times count from the release: what came before gives a short beginning of the panel its digits.
-  const S before = from.time - beside * (panel.end.time - from.time);
-  Inside inside{from, Mask((place > beside) | (before > S(0)))};
+  // The panel's tolerance is one of its whole duration, and times count from the release.
+  const Mask is_late = from.time > beside * (panel.end.time - from.time);
+  Inside inside{from, Mask((place > beside) | is_late)};
   if (!any(inside.is_sharp)) return inside;
   ContactState<S>& at = inside.state;
   const S way = select(panel.turned < S(0), S(-1), S(1));

@@ -50,7 +50,7 @@ class GuardedSteps {
     if (!method.advance()) return Stepped::no_step;
     const Step<D>& step = method.step();
     const double turned = std::abs(angle(step.y1) - angle(step.y0));
-    // In this order the least of 1,000 and of no number is 1,000.
+    // std::min(1000.0, NaN) is 1000.0.
     const auto count = 2 + static_cast<std::size_t>(std::min(1000.0, turned * (looks / std::numbers::pi)));
     look(step, count, sample);
     events_.clear();
@@ -86,7 +86,7 @@ class GuardedSteps {
       for (std::size_t g = 0; g < guards.size(); ++g) guards[g] = sample(g, y);
     }
   }
-  /// Sees every guard at so many looks of the step.
+  /// Samples every guard at so many looks of the step.
   template <class SampleOf>
   void look(const Step<D>& step, std::size_t count, const SampleOf& sample) {
     seen_.resize(now_.size() * count);

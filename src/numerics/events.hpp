@@ -8,10 +8,10 @@
 ///
 /// Pairs. Two falls and rises inside one step leave equal signs at its ends, and are found by looking at the
 /// extrema between them. The ends' values and slopes are the method's own, so a single extremum is never
-/// missed; looks at interior points, taken from a cubic Hermite interpolant, catch steps that hold more than
-/// one. The interpolant only says where to look. Wherever it is not clear of zero, the method itself retakes
-/// the part of the step up to that point and its value decides, and every reported time is polished on
-/// retaken steps.
+/// missed; samples at interior points, taken from a cubic Hermite interpolant, catch steps that hold more
+/// than one. The interpolant only says where to look. Wherever it is not clear of zero, the method itself
+/// retakes the part of the step up to that point and its value decides, and every reported time is polished
+/// on retaken steps.
 #pragma once
 
 #include <algorithm>

@@ -25,7 +25,7 @@ Solver follow_up(const Request& request);
 GradientSolver make_gradient_solver(const Request& request);
 
 /// Whether hoops made after lines of designs may be interpolated: where to solve one takes long, and phases
-/// tell on which side of each discontinuity it is. The worst of them may not.
+/// help to tell on which side of a discontinuity it is. The worst of them may not.
 bool can_be_interpolated(const Request& request);
 /// The axis along which they are in a spec's map; empty: every hoop is solved.
 std::string_view interpolated_along(const Spec& spec, const Request& request);

@@ -2,10 +2,8 @@
 #include "tolerance/made_line.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstring>
-#include <optional>
-#include <tuple>
 #include <utility>
 
 #include "numerics/mixed.hpp"
@@ -20,44 +18,7 @@ bool is_alike(double a, double b, double spread) {
   return std::abs(a - b) <= spread + rounding * std::abs(a);
 }
 
-/// A design is nothing but its numbers.
-using Numbers = std::array<double, sizeof(Design) / sizeof(double)>;
-static_assert(sizeof(Numbers) == sizeof(Design));
-Numbers numbers_of(const Design& design) {
-  Numbers numbers;
-  std::memcpy(&numbers, &design, sizeof numbers);
-  return numbers;
-}
-
-/// The place of the only number in which two drawings differ; unset: none, or several.
-std::optional<std::size_t> difference(const Numbers& a, const Numbers& b) {
-  std::optional<std::size_t> only;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    if (a[i] == b[i] || (std::isnan(a[i]) && std::isnan(b[i]))) continue;
-    if (only) return {};
-    only = i;
-  }
-  return only;
-}
-
 }  // namespace
-
-DrawnLine line_of(std::span<const Design> drawings) {
-  DrawnLine line;
-  double way = 0.0;
-  Numbers last = numbers_of(drawings[0]);
-  for (; line.count < drawings.size(); ++line.count) {
-    const Numbers next = numbers_of(drawings[line.count]);
-    const auto differs = difference(last, next);
-    if (!differs || (!line.along.empty() && *differs != line.place)) break;
-    const double step = next[*differs] - last[*differs];
-    if (!(step * way >= 0.0) || !std::isfinite(step)) break;
-    if (line.along.empty()) line.along.push_back(last[*differs]);
-    line.along.push_back(next[*differs]);
-    line.place = *differs, way = step, last = next;
-  }
-  return line;
-}
 
 bool MadeLine::suits(const DrawnLine& line, std::span<const Design> drawings, const MadeHoops& hoops) {
   const bool enough = line.count >= shortest_line && hoops.samples() >= fewest_samples;
@@ -112,40 +73,42 @@ void MadeLine::for_gaps(std::size_t hoop, const F& take) {
   for (std::size_t j = 0; j < count_; ++j)
     if (kinds_[place(j, hoop)].is_solved) nodes_.push_back(j);
   for (std::size_t i = 0; i + 1 < nodes_.size(); ++i)
-    if (nodes_[i + 1] - nodes_[i] > 1) take(gap_after(i, hoop));
+    if (nodes_[i + 1] - nodes_[i] > 1) take(gap_after(i, nodes_, hoop));
 }
 
-auto MadeLine::gap_after(std::size_t i, std::size_t hoop) const -> Gap {
-  Gap gap{.from = nodes_[i], .to = nodes_[i + 1]};
-  const auto kind_of = [&](std::size_t k) -> const Kind& { return kinds_[place(nodes_[k], hoop)]; };
-  // Of the nodes about the gap, those that are alike: so many below and above at most.
-  const auto alike = [&](const auto& is_alike) {
+auto MadeLine::gap_after(std::size_t i, std::span<const std::size_t> solved, std::size_t hoop) const -> Gap {
+  Gap gap{.from = solved[i], .to = solved[i + 1]};
+  const auto kind_of = [&](std::size_t k) -> const Kind& { return kinds_[place(solved[k], hoop)]; };
+  const auto agrees = [&](std::size_t k) { return agree(kind_of(i), kind_of(k)); };
+  const auto is_like = [&](std::size_t k) { return kind_of(i).is_like(kind_of(k)); };
+  // Those about the gap for which that is so: two below it and two above at most.
+  const auto run_of = [&](const auto& is_so) {
     std::size_t low = i, high = i + 1;
-    while (low > 0 && i - low < 2 && is_alike(low - 1)) --low;
-    while (high + 1 < nodes_.size() && high - i < 3 && is_alike(high + 1)) ++high;
+    while (low > 0 && i - low < 2 && is_so(low - 1)) --low;
+    while (high + 1 < solved.size() && high - i < 3 && is_so(high + 1)) ++high;
     return std::pair(low, high);
   };
-  const auto ends_like = [&](std::size_t k) { return this->ends_like(kind_of(i), kind_of(k)); };
-  const auto is_like = [&](std::size_t k) { return kind_of(i).is_like(kind_of(k)); };
-  if (!ends_like(i + 1) || kind_of(i).status == Status::failed) return gap;
-  if (is_like(i + 1)) {
-    auto [low, high] = alike(is_like);
-    if (high - low < 3) std::tie(low, high) = alike(ends_like);
-    if (high - low < 3) return gap;
-    const std::size_t first = std::clamp(i > 0 ? i - 1 : 0, low, high - 3);
-    gap.nodes = {nodes_[i], nodes_[i + 1]};
-    for (std::size_t k = first, filled = 2; filled < gap.nodes.size(); ++k)
-      if (k != i && k != i + 1) gap.nodes[filled++] = nodes_[k];
-    gap.checks[0] = {gap.nodes[0], gap.nodes[1], gap.nodes[2]}, gap.checked = 1;
+  if (!agrees(i + 1) || kind_of(i).status == Status::failed) return gap;
+  const auto [low, high] = run_of(agrees);
+  if (!is_like(i + 1)) {
+    // Phases change in the gap, and with them perhaps what the numbers follow: both sides have to tell them.
+    if (i - low < 2 || high - i < 3) return gap;
+    gap.nodes = {solved[i], solved[i + 1], solved[i - 1], solved[i + 2]};
+    gap.checks = {Nodes<3>{solved[i], solved[i - 1], solved[i - 2]},
+                  Nodes<3>{solved[i + 1], solved[i + 2], solved[i + 3]}};
+    gap.checked = 2;
     return gap;
   }
-  // Phases change in the gap, and with them perhaps what the numbers follow: each side has to tell them.
-  const auto [low, high] = alike(ends_like);
-  if (i - low < 2 || high - i < 3) return gap;
-  gap.nodes = {nodes_[i], nodes_[i + 1], nodes_[i - 1], nodes_[i + 2]};
-  gap.checks = {Nodes<3>{nodes_[i], nodes_[i - 1], nodes_[i - 2]},
-                Nodes<3>{nodes_[i + 1], nodes_[i + 2], nodes_[i + 3]}};
-  gap.checked = 2;
+  // One on either side, or the nearest two on one side, beyond a change of phases only if there are too few.
+  auto [first, last] = run_of(is_like);
+  if (last - first < 3) first = low, last = high;
+  if (last - first < 3) return gap;
+  const bool has_below = first<i, has_above = last> i + 1;
+  const std::size_t nearer = has_below ? i - 1 : i + 2, farther = has_below && has_above ? i + 2
+                                                                  : has_below            ? i - 2
+                                                                                         : i + 3;
+  gap.nodes = {solved[i], solved[i + 1], solved[nearer], solved[farther]};
+  gap.checks[0] = {solved[i], solved[i + 1], solved[nearer]}, gap.checked = 1;
   return gap;
 }
 
@@ -161,13 +124,10 @@ std::array<double, N> MadeLine::weights(const Nodes<N>& nodes, double x) const {
   return weights;
 }
 
+/// A kink or a step in the middle of the gap would show there last where phases change.
 bool MadeLine::is_smooth(const Gap& gap, std::size_t hoop) const {
-  if (gap.checked == 0) return false;
+  constexpr std::array quarters{0.25, 0.75}, middle{0.5, 0.5};
   const std::size_t each = numbers_.size();
-  const double middle = 0.5 * (x_[gap.from] + x_[gap.to]);
-  const auto cubic = weights(gap.nodes, middle);
-  std::array<std::array<double, 3>, 2> squares;
-  for (std::size_t c = 0; c < gap.checked; ++c) squares[c] = weights(gap.checks[c], middle);
   const auto told = [&](const auto& nodes, const auto& weights, std::size_t n) {
     double sum = 0.0;
     for (std::size_t i = 0; i < nodes.size(); ++i) sum += weights[i] * number(nodes[i], hoop, n);
@@ -177,13 +137,17 @@ bool MadeLine::is_smooth(const Gap& gap, std::size_t hoop) const {
     return std::any_of(gap.nodes.begin(), gap.nodes.end(),
                        [&](std::size_t node) { return !std::isnan(number(node, hoop, n)); });
   };
-  for (std::size_t n = 0; n < each; ++n) {
-    if (!applies(n)) continue;
-    const double better = told(gap.nodes, cubic, n);
-    for (std::size_t c = 0; c < gap.checked; ++c)  // NaN differs from everything
-      if (!is_alike(better, told(gap.checks[c], squares[c], n), spreads_[gap.from * each + n])) return false;
-  }
-  return true;
+  for (std::size_t c = 0; c < gap.checked; ++c)
+    for (const double share : gap.checked == 2 ? quarters : middle) {
+      const double x = x_[gap.from] + share * (x_[gap.to] - x_[gap.from]);
+      const auto cubic = weights(gap.nodes, x);
+      const auto square = weights(gap.checks[c], x);
+      for (std::size_t n = 0; n < each; ++n)  // NaN differs from everything
+        if (applies(n) && !is_alike(told(gap.nodes, cubic, n), told(gap.checks[c], square, n),
+                                    spreads_[gap.from * each + n]))
+          return false;
+    }
+  return gap.checked > 0;
 }
 
 void MadeLine::interpolate(const Gap& gap, std::size_t hoop) {
@@ -233,60 +197,66 @@ void MadeLine::refine(std::span<const Design> drawings, MadeHoops& hoops, const 
   }
 }
 
-/// Whether a hoop that was solved by chance differs from what its neighbours of that kind, twice as far from
-/// each other as those that anything is interpolated between, would have made of it.
+/// Whether a hoop that was solved by chance differs from what its neighbours, twice as far from each other as
+/// those that anything is interpolated between, would have made of it.
 bool MadeLine::surprises(std::size_t drawing, std::size_t hoop) const {
-  const std::size_t last = count_ - 1, from = drawing > stride ? drawing - stride : 0,
-                    to = std::min(drawing + stride, last);
-  const Kind &here = kinds_[place(drawing, hoop)], &around = kinds_[place(from, hoop)];
-  Gap gap{.from = from, .to = to, .nodes = {from, to}};
-  std::size_t filled = 2;
+  std::array<std::size_t, 6> around;  // solved by chance as well, or at the line's ends
+  std::size_t count = 0;
   const auto add = [&](std::size_t node) {
-    if (filled < gap.nodes.size() && around.is_like(kinds_[place(node, hoop)])) gap.nodes[filled++] = node;
+    if (count == 0 || node > around[count - 1]) around[count++] = node;
   };
-  if (from > 0) add(from > stride ? from - stride : 0);
-  if (to < last) add(std::min(to + stride, last));
-  if (filled < gap.nodes.size() && to + stride < last) add(std::min(to + 2 * stride, last));
-  if (filled < gap.nodes.size() && from > stride) add(from > 2 * stride ? from - 2 * stride : 0);
-  if (!around.is_like(kinds_[place(to, hoop)]) || filled < gap.nodes.size()) return is_narrow(drawing, hoop);
-  gap.checks[0] = {from, to, gap.nodes[2]}, gap.checked = 1;
-  if (!is_smooth(gap, hoop)) return false;
-  return !ends_like(around, here) || !is_told(gap.nodes, drawing, hoop);
+  for (std::size_t k = 3; k > 0; --k) add(drawing > k * stride ? drawing - k * stride : 0);
+  const std::size_t below = count - 1;
+  for (std::size_t k = 1; k <= 3; ++k) add(std::min(drawing + k * stride, count_ - 1));
+  const Gap gap = gap_after(below, std::span(around).first(count), hoop);
+  if (!is_smooth(gap, hoop)) return is_in_narrow_band(drawing, hoop) || has_narrow_phases(drawing, hoop);
+  return !agree(kinds_[place(gap.from, hoop)], kinds_[place(drawing, hoop)]) ||
+         !is_told(gap.nodes, drawing, hoop);
 }
 
 bool MadeLine::is_told(const Nodes<4>& nodes, std::size_t drawing, std::size_t hoop) const {
-  constexpr double loose = 16.0;  // nodes may be twice as far from each other as about a gap
+  // Between nodes twice as far from each other cubics are so much worse, and few hoops lie in narrow bands.
+  constexpr double loose = 16.0;
   const auto cubic = weights(nodes, x_[drawing]);
   for (std::size_t n = 0; n < numbers_.size(); ++n) {
     double told = 0.0;
     for (std::size_t i = 0; i < cubic.size(); ++i) told += cubic[i] * number(nodes[i], hoop, n);
     const double value = number(drawing, hoop, n);
-    if (value == value && !is_alike(told, value, loose * spreads_[drawing * numbers_.size() + n]))
-      return false;
+    if (std::isnan(value) && std::isnan(told)) continue;
+    if (!is_alike(told, value, loose * spreads_[drawing * numbers_.size() + n])) return false;
   }
   return true;
 }
 
-/// Whether a solved hoop lies in a band of its kind that fits between two hoops that are solved, amid
-/// another, and its numbers are not what those around it say.
-bool MadeLine::is_narrow(std::size_t drawing, std::size_t hoop) const {
+/// Whether two solved hoops beside a hoop, so near each other that nothing between them might have been
+/// solved, agree with each other and not with it.
+bool MadeLine::is_in_narrow_band(std::size_t drawing, std::size_t hoop) const {
+  const auto kind_of = [&](std::size_t j) -> const Kind& { return kinds_[place(j, hoop)]; };
+  for (std::size_t low = drawing; low-- > 0 && drawing - low < stride;) {
+    if (!kind_of(low).is_solved || agree(kind_of(low), kind_of(drawing))) continue;
+    for (std::size_t high = drawing + 1; high < count_ && high - low <= stride; ++high)
+      if (kind_of(high).is_solved && agree(kind_of(low), kind_of(high))) return true;
+  }
+  return false;
+}
+
+/// Whether a hoop has phases that those beside it do not, between which anything would be interpolated, and
+/// is not what they say.
+bool MadeLine::has_narrow_phases(std::size_t drawing, std::size_t hoop) const {
   const auto kind_of = [&](std::size_t j) -> const Kind& { return kinds_[place(j, hoop)]; };
   const Kind& here = kind_of(drawing);
   std::size_t first = drawing, last = drawing;
   while (first > 0 && here.is_like(kind_of(first - 1))) --first;
   while (last + 1 < count_ && here.is_like(kind_of(last + 1))) ++last;
   if (first == 0 || last + 1 == count_ || last - first + 1 >= stride) return false;
-  const Kind &before = kind_of(first - 1), &after = kind_of(last + 1);
-  if (!before.is_solved || !after.is_solved || !before.is_like(after)) return false;
-  if (!ends_like(before, here)) return true;
-  std::size_t low = first - 1, high = last + 1;
-  while (low > 0 && !kind_of(--low).is_solved)
-    ;
-  while (high + 1 < count_ && !kind_of(++high).is_solved)
-    ;
-  const bool has_nodes =
-      low < first - 1 && ends_like(kind_of(low), here) && high > last + 1 && ends_like(kind_of(high), here);
-  return !has_nodes || !is_told({first - 1, last + 1, low, high}, drawing, hoop);
+  std::array<std::size_t, 6> around;  // three below, and three above
+  std::size_t begin = 3, end = 3;
+  for (std::size_t j = first; j-- > 0 && begin > 0;)
+    if (kind_of(j).is_solved) around[--begin] = j;
+  for (std::size_t j = last + 1; j < count_ && end < around.size(); ++j)
+    if (kind_of(j).is_solved) around[end++] = j;
+  const Gap gap = gap_after(2 - begin, std::span(around).subspan(begin, end - begin), hoop);
+  return is_smooth(gap, hoop) && (!agree(kind_of(gap.from), here) || !is_told(gap.nodes, drawing, hoop));
 }
 
 bool MadeLine::ask_where_surprised() {

@@ -6,7 +6,8 @@
 /// a discontinuity. Every eighth of these is solved, beginning anywhere. What lies between two of them is
 /// interpolated where the four nearest agree in status and lift-offs, and where a polynomial of one degree
 /// less tells the same; else it is halved. Phases may change between the two, as where a hoop just begins to
-/// slip, if polynomials of either side tell the same, too.
+/// slip, if polynomials of both sides tell the same. They may not where they are all that tells on which side
+/// of a discontinuity a hoop is: where they are asked for, and where no numbers are.
 ///
 /// A band of other outcomes between two solved hoops would be passed over. But of the hoops made after a
 /// drawing one in eight is solved whatever lies around it. If such a hoop is not what would have been
@@ -21,26 +22,18 @@
 #include <vector>
 
 #include "leapmap/outcome.hpp"
+#include "tolerance/drawn_line.hpp"
 #include "tolerance/made_hoops.hpp"
 #include "trajectory/solver.hpp"
 
 namespace leapmap {
 
-/// The drawings of a line are those from the first on that differ in one parameter, which ascends or
-/// descends.
-struct DrawnLine {
-  std::size_t count = 1;
-  std::size_t place = 0;      ///< of the parameter among a design's numbers
-  std::vector<double> along;  ///< its values; empty: there is but one drawing
-};
-DrawnLine line_of(std::span<const Design> drawings);
-
 /// One a thread.
 class MadeLine {
  public:
   /// numbers: of jumps, that are asked for besides status and lift-offs. phases: whether these are, too.
-  explicit MadeLine(std::vector<double Outcome::*> numbers, bool phases = false)
-      : numbers_(std::move(numbers)), phases_matter_(phases) {}
+  MadeLine(std::vector<double Outcome::*> numbers, bool phases)
+      : numbers_(std::move(numbers)), phases_matter_(phases || numbers_.empty()) {}
 
   /// Whether so many drawings so near each other are worth interpolating.
   static bool suits(const DrawnLine& line, std::span<const Design> drawings, const MadeHoops& hoops);
@@ -82,8 +75,8 @@ class MadeLine {
   double number(std::size_t drawing, std::size_t hoop, std::size_t n) const {
     return values_[place(drawing, hoop) * numbers_.size() + n];
   }
-  /// Whether two kinds differ in nothing that is asked for.
-  bool ends_like(Kind a, const Kind& b) const {
+  /// Whether nothing that is asked for besides numbers differs.
+  bool agree(Kind a, const Kind& b) const {
     if (!phases_matter_) a.phases = b.phases;
     return a.is_like(b);
   }
@@ -93,7 +86,8 @@ class MadeLine {
   /// Asks for all hoops around those that are not what was expected. False: there are none.
   bool ask_where_surprised();
   bool surprises(std::size_t drawing, std::size_t hoop) const;
-  bool is_narrow(std::size_t drawing, std::size_t hoop) const;
+  bool is_in_narrow_band(std::size_t drawing, std::size_t hoop) const;
+  bool has_narrow_phases(std::size_t drawing, std::size_t hoop) const;
   /// Whether the numbers of a solved hoop are about what the cubic through these nodes says.
   bool is_told(const Nodes<4>& nodes, std::size_t drawing, std::size_t hoop) const;
   void measure_spreads();
@@ -102,8 +96,8 @@ class MadeLine {
   /// Calls take(gap) for each gap of a hoop.
   template <class F>
   void for_gaps(std::size_t hoop, const F& take);
-  /// That after the i-th of nodes_.
-  Gap gap_after(std::size_t i, std::size_t hoop) const;
+  /// That after the i-th of some solved drawings, which ascend.
+  Gap gap_after(std::size_t i, std::span<const std::size_t> solved, std::size_t hoop) const;
   bool is_smooth(const Gap& gap, std::size_t hoop) const;
   void interpolate(const Gap& gap, std::size_t hoop);
   /// Of the polynomial through some nodes, at x.

@@ -22,7 +22,8 @@ if(LEAPMAP_EMCC AND BOOST_INCLUDE_DIR)
     noslip/way trajectory/way friction/rolling_leg friction/sliding_leg friction/sliding_panel noslip/clock
     noslip/exact noslip/exact_motion noslip/find noslip/leg noslip/prepare noslip/rolling_motion
     noslip/rolling_time noslip/take_off leapmap/outcome gaits/settle numerics/sobol_points
-    tolerance/made_hoops tolerance/made_sample tolerance/made_line tolerance/scatter_solver)
+    tolerance/drawn_line tolerance/made_hoops tolerance/made_sample tolerance/made_line
+    tolerance/scatter_solver)
   # Of one hoop at a time: made small, as it is much of the page.
   set(derivatives
     friction/gradient gaits/error_growth gaits/return_map noslip/dual_jump noslip/dual_time noslip/gradient

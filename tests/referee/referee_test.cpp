@@ -92,11 +92,11 @@ Motion any_motion(std::mt19937_64& random, const Body& body) {
 }
 
 /// (7) to (9) and the mode's two equations with both multipliers, row by row, and their right sides.
-Eigen::Vector<long double, 5> all_at_once(const Body& body, const Mode& mode, const Motion& at) {
+Eigen::Vector<long double, 5> all_at_once(const Body& body, double slope, const Mode& mode,
+                                          const Motion& at) {
   using Number = long double;
-  const Number m = body.m, m_p = body.m_p, R = body.R, L = body.L, g_along = body.g_along,
-               g_across = body.g_across, M = m + m_p, s = std::sin(Number(at.phi)),
-               c = std::cos(Number(at.phi)), w2 = Number(at.spin) * at.spin;
+  const Number m = body.m, m_p = body.m_p, R = body.R, L = body.L, g = body.g, M = m + m_p,
+               s = std::sin(Number(at.phi)), c = std::cos(Number(at.phi)), w2 = Number(at.spin) * at.spin;
   Eigen::Matrix<Number, 5, 5> A = Eigen::Matrix<Number, 5, 5>::Zero();
   A.row(0) << M, 0, -m_p * L * c, -1, 0;
   A.row(1) << 0, M, m_p * L * s, 0, -1;
@@ -107,9 +107,9 @@ Eigen::Vector<long double, 5> all_at_once(const Body& body, const Mode& mode, co
   if (mode.kind == Mode::slides) A(3, 4) = -mode.drag;
   A(4, is_free ? 4 : 1) = 1;
   Eigen::Vector<Number, 5> b = Eigen::Vector<Number, 5>::Zero();
-  b[0] = M * g_along - m_p * w2 * L * s;
-  b[1] = -M * g_across - m_p * w2 * L * c;
-  b[2] = body.motor - m_p * L * (g_along * c + g_across * s);
+  b[0] = M * g * std::sin(Number(slope)) - m_p * w2 * L * s;
+  b[1] = -M * g * std::cos(Number(slope)) - m_p * w2 * L * c;
+  b[2] = body.motor - m_p * g * L * std::sin(Number(slope) + at.phi);
   return A.fullPivLu().solve(b);
 }
 
@@ -122,15 +122,17 @@ TEST(Referee, ItsForcesSolveItsEquationsWhateverTheMasses) {
           const bool is_free = kind == Mode::flies || kind == Mode::unheld;
           if (is_free && inertia < 1e-3) continue;  // next to nothing turns there
           for (int k = 0; k < 20; ++k) {
-            Body body{};
-            body.m = 1.0, body.m_p = mass, body.R = 1.0, body.L = offset, body.I = inertia, body.g = 1.0;
-            body.g_along = body.g * std::sin(0.4), body.g_across = body.g * std::cos(0.4),
-            body.motor = 0.3 * body.mass();
+            const Design design{.slope = 0.4,
+                                .mass_ratio = mass,
+                                .offset_ratio = offset,
+                                .inertia_factor = inertia,
+                                .drive_torque = 0.3};
+            const Body body = body_of(design, {.motor_in_flight = false, .radius = 1.0, .gravity = 1.0});
             const Mode mode{kind, uniform(random, -0.4, 0.4)};
             Motion at{};
             at.phi = uniform(random, -4.0, 4.0), at.spin = uniform(random, -2.0, 2.0);
             const Forces forces = forces_of(body, mode, at);
-            const Eigen::Vector<long double, 5> right = all_at_once(body, mode, at);
+            const Eigen::Vector<long double, 5> right = all_at_once(body, design.slope, mode, at);
             const std::array<double, 5> numbers{forces.x, forces.y, forces.phi, forces.friction,
                                                 forces.normal};
             // Roundings of the largest of them, times how much masses and lengths of several magnitudes, and
