@@ -34,7 +34,8 @@ StepControl control_of(const Scene& scene, double tolerance) {
 
 }  // namespace
 
-/// A guard is a function of the state alone: its rate is its change along the motion's straight continuation.
+/// Samples guards, which are functions of the state alone: their rates are their changes along the motion's
+/// straight continuation.
 struct Referee::Sampled {
   const Body& body;
   const Mode& mode;
@@ -42,26 +43,30 @@ struct Referee::Sampled {
   double unit_of_spin;
 
   void all(const Y& y, std::span<Sample<double>> samples) const {
-    sample(y, [&](const auto& of) { std::ranges::transform(guards, samples.begin(), of); });
+    const Around around = around_of(y);
+    std::ranges::transform(guards, samples.begin(), [&](const Guard& guard) { return around.sample(guard); });
   }
   Sample<double> operator()(std::size_t number, const Y& y) const {
-    Sample<double> one;
-    sample(y, [&](const auto& of) { one = of(guards[number]); });
-    return one;
+    return around_of(y).sample(guards[number]);
   }
 
  private:
-  /// take(of): of(guard) is its sample.
-  template <class Take>
-  void sample(const Y& y, const Take& take) const {
+  /// A state, and those a moment later and earlier.
+  struct Around {
+    Motion at, ahead, behind;
+    double moment;
+
+    Sample<double> sample(const Guard& guard) const {
+      return {guard(at), (guard(ahead) - guard(behind)) / (2.0 * moment)};
+    }
+  };
+  Around around_of(const Y& y) const {
     const Motion at = motion_of(y);
     const Y f = derivative(body, mode, at);
-    const double d = 1e-5 / (std::abs(at.spin) + unit_of_spin);
+    const double moment = 1e-5 / (std::abs(at.spin) + unit_of_spin);
     Y ahead = y, behind = y;
-    for (std::size_t i = 0; i < y.size(); ++i) ahead[i] += d * f[i], behind[i] -= d * f[i];
-    take([&, ahead = motion_of(ahead), behind = motion_of(behind)](const Guard& guard) {
-      return Sample<double>{guard(at), (guard(ahead) - guard(behind)) / (2.0 * d)};
-    });
+    for (std::size_t i = 0; i < y.size(); ++i) ahead[i] += moment * f[i], behind[i] -= moment * f[i];
+    return {at, motion_of(ahead), motion_of(behind), moment};
   }
 };
 
