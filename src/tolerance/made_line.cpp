@@ -99,14 +99,13 @@ auto MadeLine::gap_after(std::size_t i, std::span<const std::size_t> solved, std
     gap.checked = 2;
     return gap;
   }
-  // One on either side, or the nearest two on one side, beyond a change of phases only if there are too few.
+  // One on either side, or the nearest two on one side; beyond a change of phases only if there are too few.
   auto [first, last] = run_of(is_like);
   if (last - first < 3) first = low, last = high;
   if (last - first < 3) return gap;
-  const bool has_below = first<i, has_above = last> i + 1;
-  const std::size_t nearer = has_below ? i - 1 : i + 2, farther = has_below && has_above ? i + 2
-                                                                  : has_below            ? i - 2
-                                                                                         : i + 3;
+  const bool only_above = first == i, only_below = last == i + 1;
+  const std::size_t nearer = only_above ? i + 2 : i - 1;
+  const std::size_t farther = only_above ? i + 3 : only_below ? i - 2 : i + 2;
   gap.nodes = {solved[i], solved[i + 1], solved[nearer], solved[farther]};
   gap.checks[0] = {solved[i], solved[i + 1], solved[nearer]}, gap.checked = 1;
   return gap;
@@ -124,7 +123,8 @@ std::array<double, N> MadeLine::weights(const Nodes<N>& nodes, double x) const {
   return weights;
 }
 
-/// A kink or a step in the middle of the gap would show there last where phases change.
+/// Where phases change in the gap, and with them the curvature, polynomials may meet in its middle: they are
+/// compared on both sides of it.
 bool MadeLine::is_smooth(const Gap& gap, std::size_t hoop) const {
   constexpr std::array quarters{0.25, 0.75}, middle{0.5, 0.5};
   const std::size_t each = numbers_.size();
@@ -240,8 +240,8 @@ bool MadeLine::is_in_narrow_band(std::size_t drawing, std::size_t hoop) const {
   return false;
 }
 
-/// Whether a hoop has phases that those beside it do not, between which anything would be interpolated, and
-/// is not what they say.
+/// Whether a hoop's phases are those of a few drawings only, and interpolation between the hoops beside these
+/// would have told something else.
 bool MadeLine::has_narrow_phases(std::size_t drawing, std::size_t hoop) const {
   const auto kind_of = [&](std::size_t j) -> const Kind& { return kinds_[place(j, hoop)]; };
   const Kind& here = kind_of(drawing);
