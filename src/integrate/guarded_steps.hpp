@@ -77,7 +77,7 @@ class GuardedSteps {
   Sample<double>& now(std::size_t guard) { return now_[guard]; }
 
  private:
-  /// All guards at a state; at once, where sample.all(y, guards) tells them for less than one by one.
+  /// Samples all guards at a state: by sample.all(y, guards), if there is one, else one after the other.
   template <class SampleOf>
   static void sample_all(const SampleOf& sample, const State<D>& y, std::span<Sample<double>> guards) {
     if constexpr (requires { sample.all(y, guards); }) {

@@ -15,7 +15,7 @@
 
 namespace leapmap {
 
-/// With their rates in time.
+/// The guards' values and rates in time.
 struct Watched {
   Sample<double> normal_force, spin;
 };

@@ -24,8 +24,8 @@ Solver follow_up(const Request& request);
 /// The same with the derivatives among the columns, if any.
 GradientSolver make_gradient_solver(const Request& request);
 
-/// Whether hoops made after lines of designs may be interpolated: where to solve one takes long, and phases
-/// help to tell on which side of a discontinuity it is. The worst of them may not.
+/// Whether manufactured hoops may be interpolated along an axis: if one takes long to solve, and its phases
+/// help to find discontinuities. If the worst case is asked for, all are solved.
 bool can_be_interpolated(const Request& request);
 /// The axis along which they are in a spec's map; empty: every hoop is solved.
 std::string_view interpolated_along(const Spec& spec, const Request& request);

@@ -71,16 +71,16 @@ template <class F>
 void MadeLine::for_gaps(std::size_t hoop, const F& take) {
   nodes_.clear();
   for (std::size_t j = 0; j < count_; ++j)
-    if (kinds_[place(j, hoop)].is_solved) nodes_.push_back(j);
+    if (kind(j, hoop).is_solved) nodes_.push_back(j);
   for (std::size_t i = 0; i + 1 < nodes_.size(); ++i)
     if (nodes_[i + 1] - nodes_[i] > 1) take(gap_after(i, nodes_, hoop));
 }
 
 auto MadeLine::gap_after(std::size_t i, std::span<const std::size_t> solved, std::size_t hoop) const -> Gap {
   Gap gap{.from = solved[i], .to = solved[i + 1]};
-  const auto kind_of = [&](std::size_t k) -> const Kind& { return kinds_[place(solved[k], hoop)]; };
-  const auto agrees = [&](std::size_t k) { return agree(kind_of(i), kind_of(k)); };
-  const auto is_like = [&](std::size_t k) { return kind_of(i).is_like(kind_of(k)); };
+  const Kind& here = kind(solved[i], hoop);
+  const auto agrees = [&](std::size_t k) { return agree(here, kind(solved[k], hoop)); };
+  const auto is_like = [&](std::size_t k) { return here.is_like(kind(solved[k], hoop)); };
   // Those about the gap for which that is so: two below it and two above at most.
   const auto run_of = [&](const auto& is_so) {
     std::size_t low = i, high = i + 1;
@@ -88,10 +88,10 @@ auto MadeLine::gap_after(std::size_t i, std::span<const std::size_t> solved, std
     while (high + 1 < solved.size() && high - i < 3 && is_so(high + 1)) ++high;
     return std::pair(low, high);
   };
-  if (!agrees(i + 1) || kind_of(i).status == Status::failed) return gap;
+  if (!agrees(i + 1) || here.status == Status::failed) return gap;
   const auto [low, high] = run_of(agrees);
   if (!is_like(i + 1)) {
-    // Phases change in the gap, and with them perhaps what the numbers follow: both sides have to tell them.
+    // The numbers may have a kink or a step at the change of phases. Both sides have to agree on them.
     if (i - low < 2 || high - i < 3) return gap;
     gap.nodes = {solved[i], solved[i + 1], solved[i - 1], solved[i + 2]};
     gap.checks = {Nodes<3>{solved[i], solved[i - 1], solved[i - 2]},
@@ -99,7 +99,7 @@ auto MadeLine::gap_after(std::size_t i, std::span<const std::size_t> solved, std
     gap.checked = 2;
     return gap;
   }
-  // One on either side, or the nearest two on one side; beyond a change of phases only if there are too few.
+  // One node on either side, or the nearest two on one side. If they are too few, other phases count as well.
   auto [first, last] = run_of(is_like);
   if (last - first < 3) first = low, last = high;
   if (last - first < 3) return gap;
@@ -123,16 +123,19 @@ std::array<double, N> MadeLine::weights(const Nodes<N>& nodes, double x) const {
   return weights;
 }
 
-/// Where phases change in the gap, and with them the curvature, polynomials may meet in its middle: they are
-/// compared on both sides of it.
+template <std::size_t N>
+double MadeLine::weighted(const Nodes<N>& nodes, const std::array<double, N>& weights, std::size_t hoop,
+                          std::size_t n) const {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < N; ++i) sum += weights[i] * number(nodes[i], hoop, n);
+  return sum;
+}
+
+/// If phases and with them the curvature change in the gap, the polynomials may cross in its middle. They are
+/// compared on both sides of it then.
 bool MadeLine::is_smooth(const Gap& gap, std::size_t hoop) const {
   constexpr std::array quarters{0.25, 0.75}, middle{0.5, 0.5};
   const std::size_t each = numbers_.size();
-  const auto told = [&](const auto& nodes, const auto& weights, std::size_t n) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < nodes.size(); ++i) sum += weights[i] * number(nodes[i], hoop, n);
-    return sum;
-  };
   const auto applies = [&](std::size_t n) {
     return std::any_of(gap.nodes.begin(), gap.nodes.end(),
                        [&](std::size_t node) { return !std::isnan(number(node, hoop, n)); });
@@ -141,10 +144,11 @@ bool MadeLine::is_smooth(const Gap& gap, std::size_t hoop) const {
     for (const double share : gap.checked == 2 ? quarters : middle) {
       const double x = x_[gap.from] + share * (x_[gap.to] - x_[gap.from]);
       const auto cubic = weights(gap.nodes, x);
-      const auto square = weights(gap.checks[c], x);
+      const auto parabola = weights(gap.checks[c], x);
       for (std::size_t n = 0; n < each; ++n)  // NaN differs from everything
-        if (applies(n) && !is_alike(told(gap.nodes, cubic, n), told(gap.checks[c], square, n),
-                                    spreads_[gap.from * each + n]))
+        if (applies(n) &&
+            !is_alike(weighted(gap.nodes, cubic, hoop, n), weighted(gap.checks[c], parabola, hoop, n),
+                      spreads_[gap.from * each + n]))
           return false;
     }
   return gap.checked > 0;
@@ -153,13 +157,11 @@ bool MadeLine::is_smooth(const Gap& gap, std::size_t hoop) const {
 void MadeLine::interpolate(const Gap& gap, std::size_t hoop) {
   const std::size_t each = numbers_.size();
   for (std::size_t j = gap.from + 1; j < gap.to; ++j) {
-    Kind& kind = kinds_[place(j, hoop)] = kinds_[place(gap.from, hoop)];
-    kind.is_solved = false;
+    Kind& between = kinds_[place(j, hoop)] = kind(gap.from, hoop);
+    between.is_solved = false;
     const auto cubic = weights(gap.nodes, x_[j]);
-    for (std::size_t n = 0; n < each; ++n) {
-      double& value = values_[place(j, hoop) * each + n] = 0.0;
-      for (std::size_t i = 0; i < cubic.size(); ++i) value += cubic[i] * number(gap.nodes[i], hoop, n);
-    }
+    for (std::size_t n = 0; n < each; ++n)
+      values_[place(j, hoop) * each + n] = weighted(gap.nodes, cubic, hoop, n);
   }
 }
 
@@ -173,8 +175,7 @@ void MadeLine::measure_spreads() {
     for (std::size_t n = 0; n < each; ++n) {
       values.clear();
       for (std::size_t k = 0; k < samples_; ++k)
-        if (kinds_[place(j, k)].is_solved && number(j, k, n) == number(j, k, n))
-          values.push_back(number(j, k, n));
+        if (kind(j, k).is_solved && number(j, k, n) == number(j, k, n)) values.push_back(number(j, k, n));
       constexpr std::size_t few = 8;
       if (values.size() < few) continue;
       std::sort(values.begin(), values.end());
@@ -197,8 +198,8 @@ void MadeLine::refine(std::span<const Design> drawings, MadeHoops& hoops, const 
   }
 }
 
-/// Whether a hoop that was solved by chance differs from what its neighbours, twice as far from each other as
-/// those that anything is interpolated between, would have made of it.
+/// Whether interpolation in a gap twice as wide as usual would have given another outcome than that of a hoop
+/// which was solved by chance.
 bool MadeLine::surprises(std::size_t drawing, std::size_t hoop) const {
   std::array<std::size_t, 6> around;  // solved by chance as well, or at the line's ends
   std::size_t count = 0;
@@ -210,53 +211,48 @@ bool MadeLine::surprises(std::size_t drawing, std::size_t hoop) const {
   for (std::size_t k = 1; k <= 3; ++k) add(std::min(drawing + k * stride, count_ - 1));
   const Gap gap = gap_after(below, std::span(around).first(count), hoop);
   if (!is_smooth(gap, hoop)) return is_in_narrow_band(drawing, hoop) || has_narrow_phases(drawing, hoop);
-  return !agree(kinds_[place(gap.from, hoop)], kinds_[place(drawing, hoop)]) ||
-         !is_told(gap.nodes, drawing, hoop);
+  return !agree(kind(gap.from, hoop), kind(drawing, hoop)) || !predicts(gap.nodes, drawing, hoop);
 }
 
-bool MadeLine::is_told(const Nodes<4>& nodes, std::size_t drawing, std::size_t hoop) const {
-  // Between nodes twice as far from each other cubics are so much worse, and few hoops lie in narrow bands.
+bool MadeLine::predicts(const Nodes<4>& nodes, std::size_t drawing, std::size_t hoop) const {
+  // The error of a cubic grows by this factor if the distance of its nodes doubles.
   constexpr double loose = 16.0;
   const auto cubic = weights(nodes, x_[drawing]);
   for (std::size_t n = 0; n < numbers_.size(); ++n) {
-    double told = 0.0;
-    for (std::size_t i = 0; i < cubic.size(); ++i) told += cubic[i] * number(nodes[i], hoop, n);
-    const double value = number(drawing, hoop, n);
-    if (std::isnan(value) && std::isnan(told)) continue;
-    if (!is_alike(told, value, loose * spreads_[drawing * numbers_.size() + n])) return false;
+    const double predicted = weighted(nodes, cubic, hoop, n), value = number(drawing, hoop, n);
+    if (std::isnan(value) && std::isnan(predicted)) continue;
+    if (!is_alike(predicted, value, loose * spreads_[drawing * numbers_.size() + n])) return false;
   }
   return true;
 }
 
-/// Whether two solved hoops beside a hoop, so near each other that nothing between them might have been
-/// solved, agree with each other and not with it.
+/// Whether two solved hoops, one on either side, agree with each other but not with the hoop between them,
+/// and are so close that no drawing between them need have been solved.
 bool MadeLine::is_in_narrow_band(std::size_t drawing, std::size_t hoop) const {
-  const auto kind_of = [&](std::size_t j) -> const Kind& { return kinds_[place(j, hoop)]; };
   for (std::size_t low = drawing; low-- > 0 && drawing - low < stride;) {
-    if (!kind_of(low).is_solved || agree(kind_of(low), kind_of(drawing))) continue;
+    if (!kind(low, hoop).is_solved || agree(kind(low, hoop), kind(drawing, hoop))) continue;
     for (std::size_t high = drawing + 1; high < count_ && high - low <= stride; ++high)
-      if (kind_of(high).is_solved && agree(kind_of(low), kind_of(high))) return true;
+      if (kind(high, hoop).is_solved && agree(kind(low, hoop), kind(high, hoop))) return true;
   }
   return false;
 }
 
-/// Whether a hoop's phases are those of a few drawings only, and interpolation between the hoops beside these
-/// would have told something else.
+/// Whether only a few neighbouring drawings have a hoop's phases, and interpolation across these drawings
+/// would have given another outcome.
 bool MadeLine::has_narrow_phases(std::size_t drawing, std::size_t hoop) const {
-  const auto kind_of = [&](std::size_t j) -> const Kind& { return kinds_[place(j, hoop)]; };
-  const Kind& here = kind_of(drawing);
+  const Kind& here = kind(drawing, hoop);
   std::size_t first = drawing, last = drawing;
-  while (first > 0 && here.is_like(kind_of(first - 1))) --first;
-  while (last + 1 < count_ && here.is_like(kind_of(last + 1))) ++last;
+  while (first > 0 && here.is_like(kind(first - 1, hoop))) --first;
+  while (last + 1 < count_ && here.is_like(kind(last + 1, hoop))) ++last;
   if (first == 0 || last + 1 == count_ || last - first + 1 >= stride) return false;
   std::array<std::size_t, 6> around;  // three below, and three above
   std::size_t begin = 3, end = 3;
   for (std::size_t j = first; j-- > 0 && begin > 0;)
-    if (kind_of(j).is_solved) around[--begin] = j;
+    if (kind(j, hoop).is_solved) around[--begin] = j;
   for (std::size_t j = last + 1; j < count_ && end < around.size(); ++j)
-    if (kind_of(j).is_solved) around[end++] = j;
+    if (kind(j, hoop).is_solved) around[end++] = j;
   const Gap gap = gap_after(2 - begin, std::span(around).subspan(begin, end - begin), hoop);
-  return is_smooth(gap, hoop) && (!agree(kind_of(gap.from), here) || !is_told(gap.nodes, drawing, hoop));
+  return is_smooth(gap, hoop) && (!agree(kind(gap.from, hoop), here) || !predicts(gap.nodes, drawing, hoop));
 }
 
 bool MadeLine::ask_where_surprised() {
@@ -273,7 +269,7 @@ bool MadeLine::ask_where_surprised() {
   bool asks = false;
   for (std::size_t j = 0; j < count_; ++j)
     for (std::size_t k = 0; k < samples_ && all[j]; ++k)
-      if (!kinds_[place(j, k)].is_solved) asked_[place(j, k)] = asks = true;
+      if (!kind(j, k).is_solved) asked_[place(j, k)] = asks = true;
   return asks;
 }
 
@@ -294,9 +290,9 @@ void MadeLine::solve(std::span<const Design> drawings, DrawnLine line, MadeHoops
 }
 
 void MadeLine::put(std::size_t drawing, std::size_t hoop, Outcome& outcome) const {
-  const Kind& kind = kinds_[place(drawing, hoop)];
-  outcome.phase_sequence = kind.phases, outcome.status = kind.status;
-  outcome.spurious_first_jump = kind.spurious, outcome.candidates = kind.candidates;
+  const Kind& here = kind(drawing, hoop);
+  outcome.phase_sequence = here.phases, outcome.status = here.status;
+  outcome.spurious_first_jump = here.spurious, outcome.candidates = here.candidates;
   for (std::size_t n = 0; n < numbers_.size(); ++n) outcome.*numbers_[n] = number(drawing, hoop, n);
 }
 

@@ -4,10 +4,10 @@
 ///
 /// The same hoop of each sample, made after one drawing after the other, changes smoothly but where it passes
 /// a discontinuity. Every eighth of these is solved, beginning anywhere. What lies between two of them is
-/// interpolated where the four nearest agree in status and lift-offs, and where a polynomial of one degree
-/// less tells the same; else it is halved. Phases may change between the two, as where a hoop just begins to
-/// slip, if polynomials of both sides tell the same. They may not where they are all that tells on which side
-/// of a discontinuity a hoop is: where they are asked for, and where no numbers are.
+/// interpolated if the four nearest agree in status and lift-offs, and if a polynomial of one degree less
+/// gives the same numbers; else the gap is halved. Phases may change in the gap, for example because the hoop
+/// begins to slip, if polynomials from both sides give the same numbers. They must agree, too, if phases are
+/// asked for, or if no numbers are: then nothing else reveals a discontinuity.
 ///
 /// A band of other outcomes between two solved hoops would be passed over. But of the hoops made after a
 /// drawing one in eight is solved whatever lies around it. If such a hoop is not what would have been
@@ -66,16 +66,17 @@ class MadeLine {
   /// Two drawings that are solved, with none between them that is.
   struct Gap {
     std::size_t from, to;
-    Nodes<4> nodes{};                  ///< about it, through which a cubic tells what lies in it
-    std::array<Nodes<3>, 2> checks{};  ///< through which polynomials have to tell the same
-    std::size_t checked = 0;           ///< the number of those; 0: the nodes are none
+    Nodes<4> nodes{};                  ///< of the cubic that interpolates in the gap
+    std::array<Nodes<3>, 2> checks{};  ///< of parabolas that have to agree with the cubic
+    std::size_t checked = 0;           ///< number of parabolas; 0: nothing may be interpolated
   };
 
   std::size_t place(std::size_t drawing, std::size_t hoop) const { return drawing * samples_ + hoop; }
   double number(std::size_t drawing, std::size_t hoop, std::size_t n) const {
     return values_[place(drawing, hoop) * numbers_.size() + n];
   }
-  /// Whether nothing that is asked for besides numbers differs.
+  const Kind& kind(std::size_t drawing, std::size_t hoop) const { return kinds_[place(drawing, hoop)]; }
+  /// Whether two kinds agree in everything asked for besides numbers.
   bool agree(Kind a, const Kind& b) const {
     if (!phases_matter_) a.phases = b.phases;
     return a.is_like(b);
@@ -88,8 +89,8 @@ class MadeLine {
   bool surprises(std::size_t drawing, std::size_t hoop) const;
   bool is_in_narrow_band(std::size_t drawing, std::size_t hoop) const;
   bool has_narrow_phases(std::size_t drawing, std::size_t hoop) const;
-  /// Whether the numbers of a solved hoop are about what the cubic through these nodes says.
-  bool is_told(const Nodes<4>& nodes, std::size_t drawing, std::size_t hoop) const;
+  /// Whether the cubic through these nodes predicts the numbers of a solved hoop.
+  bool predicts(const Nodes<4>& nodes, std::size_t drawing, std::size_t hoop) const;
   void measure_spreads();
   void solve_asked(std::span<const Design> drawings, MadeHoops& hoops, const Solver& solve);
   void keep(std::size_t at, const Outcome& outcome);
@@ -103,6 +104,10 @@ class MadeLine {
   /// Of the polynomial through some nodes, at x.
   template <std::size_t N>
   std::array<double, N> weights(const Nodes<N>& nodes, double x) const;
+  /// Its value for number n of a hoop.
+  template <std::size_t N>
+  double weighted(const Nodes<N>& nodes, const std::array<double, N>& weights, std::size_t hoop,
+                  std::size_t n) const;
 
   std::vector<double Outcome::*> numbers_;
   bool phases_matter_;

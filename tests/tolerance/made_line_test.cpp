@@ -128,16 +128,16 @@ TEST(MadeLines, NeedOneHoopOfEightWhereNothingBreaks) {
                 both.exact.column(*find_field("jump_height_mean"))[j], 1e-13);
 }
 
-/// The statistics of hoops made after 81 drawings with slopes from 0.4 to 0.48, whose outcomes are told by
-/// how far the slope is from 0.44. The goal is a height of 0.5.
+/// The statistics of hoops made after 81 drawings with slopes from 0.4 to 0.48. describe(slope - 0.44,
+/// outcome) sets a hoop's outcome. The goal is a height of 0.5.
 template <class F>
-BothWays told_around(double width, const F& tell) {
+BothWays told_around(double width, const F& describe) {
   const Scatter scatter{{{"slope", Spread::Law::normal, width}}, 1024};
   return told(scatter, line_from({.slope = 0.4}, &Design::slope, 1e-3, 81),
               [&](std::span<const Design> designs, std::span<Outcome> outcomes) {
                 for (std::size_t i = 0; i < designs.size(); ++i) {
                   outcomes[i] = {};
-                  tell(designs[i].slope - 0.44, outcomes[i]);
+                  describe(designs[i].slope - 0.44, outcomes[i]);
                 }
               });
 }
@@ -146,7 +146,7 @@ void jump(Outcome& outcome, std::uint64_t phases, double height) {
   outcome.status = Status::jumped, outcome.phase_sequence = phases, outcome.jump_height = height;
 }
 
-/// Yields to their error, which no more than a hoop or two come to.
+/// Expects yields that differ by at most three hoops of 1,024, and that are neither all high nor all low.
 void expect_yields(const BothWays& both, const std::string& what) {
   const auto exact = both.exact.column(*find_field("yield")),
              made = both.interpolated.column(*find_field("yield"));
@@ -155,7 +155,7 @@ void expect_yields(const BothWays& both, const std::string& what) {
   EXPECT_GT(*std::ranges::max_element(exact), 0.3) << what << ": nothing is put to the test";
 }
 
-/// Means to a hundredth of their standard error, for heights that spread as slopes do.
+/// Expects means that differ by at most 1 % of their standard error, if heights vary like slopes.
 void expect_means(const BothWays& both, double width, const std::string& what) {
   const auto exact = both.exact.column(*find_field("jump_height_mean")),
              made = both.interpolated.column(*find_field("jump_height_mean"));
@@ -171,7 +171,7 @@ TEST(MadeLines, NeedOneHoopOfEightWherePhasesChangeButNumbersDoNot) {
 }
 
 TEST(MadeLines, SolveHoopsWhoseNumbersBreakWherePhasesChange) {
-  // Beyond the change of phases, or before it: each side has something to tell that the other has not.
+  // The numbers break on either side of the change of phases.
   const std::vector<std::pair<std::string, double (*)(double)>> breaks{
       {"kink", [](double x) { return x > 0.0 ? 0.5 * x : 0.0; }},
       {"kink before", [](double x) { return x < 0.0 ? 0.5 * x : 0.0; }},
@@ -191,7 +191,7 @@ TEST(MadeLines, SolveAllHoopsAroundNarrowBandsBetweenAnyPhases) {
   // Bands two drawings wide, amid hoops that jump to 1 and whose phases are the same on both sides, or not.
   struct Band {
     std::string what;
-    void (*tell)(Outcome& outcome, bool upper);
+    void (*describe)(Outcome& outcome, bool upper);
     double island = 1.0;  ///< beyond, nothing jumps
   };
   constexpr auto falls = [](Outcome& outcome, bool) { jump(outcome, 3, 0.0); };
@@ -213,19 +213,19 @@ TEST(MadeLines, SolveAllHoopsAroundNarrowBandsBetweenAnyPhases) {
         if (std::abs(x) > band.island)
           outcome.status = Status::no_jump, outcome.phase_sequence = 4;
         else if (std::abs(x) < 1e-3)
-          band.tell(outcome, x > 0.0);
+          band.describe(outcome, x > 0.0);
         else
           jump(outcome, x < 0.0 ? 1 : beyond, 1.0 + x);
       });
       expect_yields(both, band.what + (beyond == 1 ? "" : ", between two phases"));
     }
-  const BothWays told_well = told_around(0.002, [](double x, Outcome& outcome) {
+  const BothWays predictable = told_around(0.002, [](double x, Outcome& outcome) {
     jump(outcome, std::abs(x) < 1e-3 ? 3 : x < 0.0 ? 1 : 2, 1.0 + x);
   });
-  EXPECT_LT(told_well.solved, 1.0 / MadeLine::stride + 0.03) << "phases are not asked for";
+  EXPECT_LT(predictable.solved, 1.0 / MadeLine::stride + 0.03) << "phases are not asked for";
 }
 
-TEST(MadeLines, TellPhasesWhereTheyAreTheGoalOrAllThatTells) {
+TEST(MadeLines, SolvePhasesExactlyIfTheyAreTheGoalOrNoNumberIs) {
   // Phases change; between them is a narrow band with another number of lift-offs.
   const Solver solver = [](std::span<const Design> designs, std::span<Outcome> outcomes) {
     for (std::size_t i = 0; i < designs.size(); ++i) {
