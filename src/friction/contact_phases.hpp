@@ -100,37 +100,50 @@ class PhaseSequence {
 
 /// Sees a hoop rock to rest: every phase of a cycle comes again in its place with less spin, and what a cycle
 /// travels shrinks so fast that all that is left of it is next to nothing. The plane is the same everywhere,
-/// so that there is nothing but the angle to tell one swing from another. Cycles of 2, 3, 4, 6 or 12 phases
-/// are seen, and only after those that phase_sequence holds.
+/// so that there is nothing but the angle to tell one swing from another. Cycles of 1 to 8, 10, 12, 14 or 16
+/// phases are seen, and only after those that phase_sequence holds.
 class Rocking {
  public:
+  /// Forgets what it has seen.
+  void restart() { count_ = shrinking_ = tried_ = 0; }
   /// Looks at a phase as it begins; direction: of sliding. True: it rocks to rest.
   bool settles(Phase phase, int direction, double travel, double angle, double spin) {
-    Begun now{phase, direction, travel, angle, spin, HUGE_VAL};
-    Begun& before = cycle_[static_cast<std::size_t>(count_ % cycle)];
-    if (count_ >= cycle) now.drift = std::abs(travel - before.travel);
-    const double share = now.drift / before.drift;  // of the drift of a cycle that the next one has
-    const bool again = count_ >= 2 * cycle && phase != Phase::flight && before.phase == phase &&
-                       before.direction == direction && before.spin * spin > 0.0 &&
-                       std::abs(spin) < std::abs(before.spin) && share < 1.0 &&
-                       now.drift * share / (1.0 - share) < nothing &&
-                       std::abs(angle - before.angle) < nothing;
-    shrinking_ = again ? shrinking_ + 1 : 0;
-    before = now;
-    ++count_;
+    begun_[static_cast<std::size_t>(count_++ % remembered)] = {phase, direction, travel, angle, spin};
+    const int cycle = cycles[static_cast<std::size_t>(tried_)];
+    if (count_ <= 2 * cycle) return false;
+    if (!comes_again(ago(2 * cycle), ago(cycle), ago(0))) {
+      tried_ = (tried_ + 1) % static_cast<int>(cycles.size()), shrinking_ = 0;
+      return false;
+    }
+    ++shrinking_;
     return count_ > 32 && shrinking_ >= cycle;
   }
 
  private:
-  static constexpr int cycle = 12;
-  static constexpr double nothing = 0.1;  // [R, rad]
+  static constexpr std::array cycles{12, 8, 10, 14, 16};  // each of its divisors, too
+  static constexpr int remembered = 33;                   // two of the longest, and the phase that begins
   struct Begun {
     Phase phase{};
     int direction = 0;
-    double travel = 0.0, angle = 0.0, spin = 0.0, drift = 0.0;
+    double travel = 0.0, angle = 0.0, spin = 0.0;
   };
-  std::array<Begun, cycle> cycle_{};
+
+  const Begun& ago(int phases) const {
+    return begun_[static_cast<std::size_t>((count_ - 1 - phases) % remembered)];
+  }
+  static bool comes_again(const Begun& first, const Begun& before, const Begun& now) {
+    constexpr double nothing = 0.1;  // [R, rad]
+    // of a cycle, and the share of it that the next one has
+    const double drift = std::abs(now.travel - before.travel),
+                 share = drift / std::abs(before.travel - first.travel);
+    return now.phase != Phase::flight && before.phase == now.phase && before.direction == now.direction &&
+           before.spin * now.spin > 0.0 && std::abs(now.spin) < std::abs(before.spin) && share < 1.0 &&
+           drift * share / (1.0 - share) < nothing && std::abs(now.angle - before.angle) < nothing;
+  }
+
+  std::array<Begun, remembered> begun_{};
   int count_ = 0, shrinking_ = 0;
+  int tried_ = 0;  // which of the cycles
 };
 
 }  // namespace leapmap

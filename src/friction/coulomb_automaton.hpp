@@ -66,11 +66,21 @@ class PhaseMachine {
         hoop_(reduce<S>(design, scene)),
         contact_(contact_of<S>(design, scene)),
         runway_(S(2) * std::numbers::pi_v<S> * S(scene.runway)),
-        at_(from) {
+        resistance_(design.resisting_torque) {
+    put(from);
+  }
+
+  /// Lets the same design begin once more, from there.
+  void put(const ContactState<S>& from) {
+    at_ = from;
     released_ = contact_energy(hoop_, at_);
-    const S c(design.resisting_torque), rounding(1e-14);
-    held_ = c > S(0) && at_.spin * at_.spin == S(0) &&
-            std::abs(torque(hoop_, trig(at_.angle)) + hoop_.resistance) <= c * (S(1) + rounding);
+    slipped_ = driven_ = S(0);
+    slides_ = false;
+    sequence_ = {}, outcome_ = {};
+    rocking_.restart();
+    const S rounding(1e-14);
+    held_ = resistance_ > S(0) && at_.spin * at_.spin == S(0) &&
+            std::abs(torque(hoop_, trig(at_.angle)) + hoop_.resistance) <= resistance_ * (S(1) + rounding);
   }
 
   std::optional<NextPhase> begin(Start start) {
@@ -224,7 +234,8 @@ class PhaseMachine {
   const CoulombObserver* observer_;
   Hoop<S> hoop_;
   Contact<S> contact_;
-  S runway_, released_{0}, slipped_{0};
+  S runway_, resistance_;
+  S released_{0}, slipped_{0};
   S driven_{0};          // work of the motor
   ContactState<S> at_;   // where the last phase began, or where all ended
   bool slides_ = false;  // in the phase told last

@@ -31,8 +31,9 @@ void CoulombLanes<T>::solve(Start start, std::span<const Design> designs, std::s
       outcomes[design] = machine->outcome();
       const bool jumps = outcomes[design].status == Status::jumped;
       if (jumps) states[design] = machine->at();
+      if (!with_times_) outcomes[design].jump_time = outcomes[design].first_jump_time = Outcome::none;
       if (!jumps || !goes_on || !goes_on(design)) return free_.push_back(place);
-      machine.emplace(designs[design], states[design], scene, nobody);
+      machine->put(states[design]);
       next = machine->begin(Start::landing);
     }
     go_on(place, *next);

@@ -20,9 +20,13 @@ class CoulombLanes {
  public:
   using S = ScalarOf<T>;
 
-  /// tolerance: relative, of times; angles, spins and heights follow.
-  explicit CoulombLanes(double tolerance)
-      : rolling_(tolerance, most_on_their_way), sliding_(tolerance, most_on_their_way) {}
+  /// tolerance: relative, of times; angles, spins and heights follow. timed: whether the time before a jump
+  /// is wanted; without it rolling takes none, jump_time and first_jump_time are NaN, and states have no
+  /// times.
+  explicit CoulombLanes(double tolerance, bool timed = true)
+      : with_times_(timed),
+        rolling_(tolerance, most_on_their_way, timed),
+        sliding_(tolerance, most_on_their_way) {}
 
   /// Solves designs[i] into outcomes[i].
   void solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes);
@@ -47,6 +51,7 @@ class CoulombLanes {
   /// Lets some of flying_ fly, and adds them to flown_.
   void fly_some();
 
+  bool with_times_;
   RollingLanes<T> rolling_;
   SlidingLanes<T> sliding_;
   std::vector<OnItsWay> on_their_way_ = std::vector<OnItsWay>(most_on_their_way);

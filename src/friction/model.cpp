@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "friction/coulomb.hpp"
@@ -11,26 +12,35 @@
 
 namespace leapmap::friction {
 
-/// Everything comes with the phases, wanted or not.
+namespace {
+
+/// Everything but the times of rolling comes with the phases, wanted or not.
+std::shared_ptr<CoulombLanes<Batch>> lanes_for(double tolerance, const Wanted& wanted) {
+  return std::make_shared<CoulombLanes<Batch>>(tolerance, wanted.first_jump_time || wanted.jump_time);
+}
+
+}  // namespace
+
 Solver exact(const Scene& scene, double tolerance, const Wanted& wanted) {
   if (scene.jumps > 1) return in_sequence(long_jumps(scene, tolerance, wanted), scene);
-  return [lanes = std::make_shared<CoulombLanes<Batch>>(tolerance), scene](std::span<const Design> designs,
-                                                                           std::span<Outcome> outcomes) {
+  return [lanes = lanes_for(tolerance, wanted), scene](std::span<const Design> designs,
+                                                       std::span<Outcome> outcomes) {
     lanes->solve(designs, scene, outcomes);
   };
 }
 
-JumpSolver<double> jumps(const Scene& scene, double tolerance, const Wanted&) {
-  return [lanes = std::make_shared<CoulombLanes<Batch>>(tolerance), scene](
+JumpSolver<double> jumps(const Scene& scene, double tolerance, const Wanted& wanted) {
+  return [lanes = lanes_for(tolerance, wanted), scene](
              Start start, std::span<const Design> designs, std::span<ContactState<double>> states,
              std::span<Outcome> outcomes) { lanes->solve(start, designs, states, scene, outcomes); };
 }
 
-LongJumpSolver<double> long_jumps(const Scene& scene, double tolerance, const Wanted&) {
-  return [lanes = std::make_shared<CoulombLanes<Batch>>(tolerance), scene](
-             Start start, std::span<const Design> designs, std::span<ContactState<double>> states,
-             std::span<Outcome> outcomes,
-             const GoesOn& goes_on) { lanes->solve(start, designs, states, scene, outcomes, goes_on); };
+LongJumpSolver<double> long_jumps(const Scene& scene, double tolerance, const Wanted& wanted) {
+  return [lanes = lanes_for(tolerance, wanted), scene](Start start, std::span<const Design> designs,
+                                                       std::span<ContactState<double>> states,
+                                                       std::span<Outcome> outcomes, const GoesOn& goes_on) {
+    lanes->solve(start, designs, states, scene, outcomes, goes_on);
+  };
 }
 
 std::function<double(const Design&)> effort(const Scene& scene, bool derivatives) {

@@ -8,8 +8,8 @@
 namespace leapmap {
 
 template <class T>
-RollingLanes<T>::RollingLanes(double tolerance, std::size_t most)
-    : leg_(tolerance), timed_rolls_(tolerance, most), phases_(most), untimed_(most) {}
+RollingLanes<T>::RollingLanes(double tolerance, std::size_t most, bool timed)
+    : with_times_(timed), leg_(tolerance), timed_rolls_(tolerance, most), phases_(most), untimed_(most) {}
 
 template <class T>
 void RollingLanes<T>::begin(std::uint32_t place, const Hoop<S>& hoop, const S& mu_static,
@@ -118,19 +118,26 @@ void RollingLanes<T>::polish_ends(std::vector<EndedPhase<S>>& ended) {
   const T spin =
       way * sqrt(larger(vis_viva_past_release(roll, x), zero) / contact_inertia(roll.hoop, trig(angle)));
 
-  // Where it slips at once there is no way to time.
-  const unsigned takes_time = Lanes<T>::bits((x > zero) & (spin - spin == zero)) & ((1u << count) - 1u);
-  typename TimedRolls<T>::Places places;
-  for (std::size_t i = 0; i < width; ++i) places[i] = bracketed(i).place;
-  timed_rolls_.begin(roll, x, places, takes_time);
+  // Where it slips at once there is no way to go.
+  const unsigned moves = Lanes<T>::bits((x > zero) & (spin - spin == zero)) & ((1u << count) - 1u);
+  if (with_times_) {
+    typename TimedRolls<T>::Places places;
+    for (std::size_t i = 0; i < width; ++i) places[i] = bracketed(i).place;
+    timed_rolls_.begin(roll, x, places, moves);
+  }
   const auto travels = lanes_of(travel + way * x), angles = lanes_of(way * angle), spins = lanes_of(spin);
   for (std::size_t i = 0; i < count; ++i) {
     const Bracketed& now = bracketed_[i];
-    if (takes_time >> i & 1u)
-      untimed_[now.place] = {now.way < S(0) ? turned_over(now.end) : now.end,
-                             {phase_of(now).at.time, travels[i], angles[i], spins[i]}};
-    else
+    if (!(moves >> i & 1u)) {
       alone(now.place, ended);
+      continue;
+    }
+    const PhaseEnd end = now.way < S(0) ? turned_over(now.end) : now.end;
+    const ContactState<S> at{phase_of(now).at.time, travels[i], angles[i], spins[i]};
+    if (with_times_)
+      untimed_[now.place] = {end, at};
+    else
+      ended.push_back({now.place, end, at});
   }
 }
 

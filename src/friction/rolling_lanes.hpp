@@ -19,8 +19,8 @@ class RollingLanes {
  public:
   using S = ScalarOf<T>;
 
-  /// tolerance: as of RollingLeg. most: phases at once, and places.
-  RollingLanes(double tolerance, std::size_t most);
+  /// tolerance: as of RollingLeg. most: phases at once, and places. timed: otherwise a phase takes no time.
+  RollingLanes(double tolerance, std::size_t most, bool timed = true);
 
   /// Adds a phase to those that the passes to come roll.
   void begin(std::uint32_t place, const Hoop<S>& hoop, const S& mu_static, const ContactState<S>& at,
@@ -62,6 +62,7 @@ class RollingLanes {
   /// Times some phases a panel further.
   void time_some(std::vector<EndedPhase<S>>& ended);
 
+  bool with_times_;
   RollingLeg<S> leg_;
   RollingWalk<S> walk_;
   TimedRolls<T> timed_rolls_;

@@ -34,16 +34,6 @@ ValueOf<S> least_node(const T& values) {
   }
 }
 
-/// The same hoop for the nodes, one or many at once.
-template <class T, class S>
-Hoop<T> hoop_at_nodes(const Hoop<S>& hoop) {
-  if constexpr (std::is_same_v<T, S>) {
-    return hoop;
-  } else {
-    return widened<T>(hoop);
-  }
-}
-
 /// w^2, of which y is the value, or n0 where it is known `by_force`.
 template <class T>
 T spin_squared(const Hoop<T>& hoop, const Trig<T>& phi, const T& y, bool by_force) {
@@ -66,7 +56,7 @@ auto SlidingPanels<S>::at_nodes(const Slide& slide, const ContactState<S>& from,
                                 const S& way, bool by_force) const -> AtNodes {
   constexpr std::size_t width = Grid::width;
   const auto put = [](const T& value, Values& values, std::size_t i) { Grid::put(value, values, i); };
-  const Hoop<T> hoop = hoop_at_nodes<T>(slide.hoop);
+  const Hoop<T> hoop = widened<T>(slide.hoop);
   AtNodes nodes_at;
   T least(std::numeric_limits<Number>::max());
   for (std::size_t i = 0; i < nodes; i += width) {
@@ -102,7 +92,7 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   const auto get = [](const Values& values, std::size_t i) { return Grid::at(values, i); };
   const auto put = [](const T& value, Values& values, std::size_t i) { Grid::put(value, values, i); };
   const Hoop<S>& hoop = slide.hoop;
-  const Hoop<T> hoops = hoop_at_nodes<T>(hoop);
+  const Hoop<T> hoops = widened<T>(hoop);
   const T m(slide.friction);
   AtEnd start, end;
   start.phi = trig(from.angle);
@@ -281,7 +271,7 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
     spin[i] = from.spin, turned[i] = from.spin * duration * grid_.node[i];
   bool settled = false;
   int left = has_derivatives<S> ? 6 : 0;  // iterations once the values are settled: derivatives come after
-  const Hoop<T> hoops = hoop_at_nodes<T>(hoop);
+  const Hoop<T> hoops = widened<T>(hoop);
   const T m(friction), length(duration);
   for (int iteration = 0; iteration < most_iterations && !(settled && left-- <= 0); ++iteration) {
     Number least_pivot = value_of(hoop.Ic) + Number(2);

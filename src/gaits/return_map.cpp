@@ -14,15 +14,6 @@ namespace {
 
 StateVector vector_of(const Landed& at) { return {at.angle, at.spin, at.slip, at.normal}; }
 
-/// Moved along what is not held at zero: slip where it sticks, and a rebound where there is none.
-Landed moved(const Landed& at, const StateVector& by) {
-  Landed to = at;
-  to.angle += by[0], to.spin += by[1];
-  if (at.slip != 0.0) to.slip += by[2];
-  if (at.normal != 0.0) to.normal += by[3];
-  return to;
-}
-
 }  // namespace
 
 double largest_eigenvalue(const StateMatrix& slope) {
@@ -56,6 +47,14 @@ StateMatrix slope_of(const ContactState<StateDual>& at) {
     for (int column = 0; column < 4; ++column)
       slope(row, column) = numbers[static_cast<std::size_t>(row)]->by[static_cast<std::size_t>(column)];
   return slope;
+}
+
+Landed moved(const Landed& at, const StateVector& by) {
+  Landed to = at;
+  to.angle += by[0], to.spin += by[1];
+  if (at.slip != 0.0) to.slip += by[2];
+  if (at.normal != 0.0) to.normal += by[3];
+  return to;
 }
 
 StateVector between(const Landed& a, const Landed& b) {
@@ -102,6 +101,7 @@ bool ReturnMap::go_round(const Design& design, int period, Landed& at, StateMatr
 bool ReturnMap::close(const Design& design, int period, const Landed& near, Orbit& orbit) {
   constexpr int most_steps = 40;
   constexpr double farthest = 0.3;  // [rad, sqrt(g/R)] that one step may go
+  constexpr double last = 1e-12;    // after a step as short as this the next would be lost in rounding
   Landed at = near;
   StateMatrix slope;
   double before = std::numeric_limits<double>::infinity();
@@ -112,11 +112,10 @@ bool ReturnMap::close(const Design& design, int period, const Landed& near, Orbi
     StateVector move = (StateMatrix::Identity() - slope).fullPivLu().solve(gap);
     const double length = move.lpNorm<Eigen::Infinity>();
     if (!std::isfinite(length)) return false;
-    // To rounding: steps get no shorter.
-    if (length <= 1e-9 && length >= 0.25 * before) return describe(design, period, at, slope, orbit);
-    if (length == 0.0) return describe(design, period, at, slope, orbit);
     if (length > farthest) move *= farthest / length;
     at = reduced(moved(at, move));
+    const bool is_rounding = length <= 1e-9 && length >= 0.25 * before;
+    if (length <= last || is_rounding) return describe(design, period, at, slope, orbit);
     before = length;
   }
   return false;

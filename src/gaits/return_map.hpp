@@ -35,6 +35,8 @@ double largest_eigenvalue(const StateMatrix& slope);
 
 /// How far b is from a, angles the shorter way round.
 StateVector between(const Landed& a, const Landed& b);
+/// Moved along what is not held at zero: slip where it sticks, and a rebound where there is none.
+Landed moved(const Landed& at, const StateVector& by);
 
 /// A periodic orbit: as many landings as its period, each with the jump that ends there.
 struct Orbit {

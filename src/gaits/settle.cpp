@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gaits/settle.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
@@ -64,41 +65,58 @@ void GaitSolver::follow(std::span<const Design> designs,
 /// Whether a design that has just landed is to be followed further. Where it has come so near to an orbit
 /// that it is not, it has settled.
 bool GaitSolver::goes_on(const Design& design, const Landed& landed, Course& course, Orbit& orbit) {
-  constexpr long most_seen = 16;
   auto& [jumps, next_look, seen, settled] = course;
   ++jumps;
-  if (jumps > scene_.settle) {  // as many more as the longest period has
-    seen.push_back(landed);
-    return jumps < scene_.settle + scene_.most_period;
-  }
-  if (jumps > next_look - most_seen) seen.push_back(landed);
-  if (jumps == next_look) {
+  const auto most_seen = 3 * static_cast<std::size_t>(scene_.most_period) + 1;
+  if (seen.size() == 2 * most_seen)
+    seen.erase(seen.begin(), seen.begin() + static_cast<std::ptrdiff_t>(most_seen));
+  seen.push_back(landed);
+  if (jumps == next_look && jumps <= scene_.settle) {
     settled = is_settled(design, seen, orbit);
-    if (settled) return false;
-    next_look *= 2;
-    seen.clear();
+    next_look += std::max(jumps / 4, 8L);
   }
   if (jumps == scene_.settle) seen.assign(1, landed);
-  return true;
+  // In the end as many more as the longest period has.
+  return !settled && jumps < scene_.settle + scene_.most_period;
 }
+
+namespace {
+
+/// Whether an orbit is where one is that is drawn to it, and was a gap away from there a round before or
+/// later: what it has not yet come near by is a geometric series of gaps.
+bool is_near(const Landed& at, double gap, const Orbit& orbit) {
+  const double left = between(at, orbit.landings.back()).lpNorm<Eigen::Infinity>();
+  return left <= 10.0 * gap / (1.0 - std::abs(orbit.multiplier)) + 1e-9;
+}
+
+}  // namespace
 
 /// Whether the last rounds come nearer to an orbit by one factor, which is its multiplier.
 bool GaitSolver::is_settled(const Design& design, std::span<const Landed> seen, Orbit& orbit) {
-  constexpr double near = 1e-3, rounding = 1e-11, alike = 0.05, contracts = 0.9;
-  for (std::size_t period = 1; 3 * period < seen.size(); ++period) {
-    std::array<double, 3> gaps;  // the last first
+  constexpr double near = 1e-3, nearing = 0.1, rounding = 1e-11, contracts = 0.99;
+  // How far factors may differ: the nearer to 1 the less, as an orbit that repels may be close by.
+  const auto alike = [](double factor) { return std::min(0.05, 0.5 * (1.0 - factor)); };
+  const auto longest = std::min(static_cast<std::size_t>(scene_.most_period), (seen.size() - 1) / 3);
+  for (std::size_t period = 1; period <= longest; ++period) {
+    std::array<StateVector, 3> rounds;  // the last first
+    std::array<double, 3> gaps;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t last = seen.size() - 1 - k * period;
-      gaps[k] = between(seen[last - period], seen[last]).lpNorm<Eigen::Infinity>();
+      rounds[k] = between(seen[last - period], seen[last]);
+      gaps[k] = rounds[k].lpNorm<Eigen::Infinity>();
     }
-    if (!(gaps[0] < near)) continue;
+    const double factor = gaps[0] / gaps[1], way = rounds[0].dot(rounds[1]) < 0.0 ? -1.0 : 1.0;
     const bool is_there = gaps[0] < rounding && gaps[1] < 1e-6;
-    const double factor = gaps[0] / gaps[1];
-    const bool shrinks = factor < contracts && std::abs(factor - gaps[1] / gaps[2]) < alike;
-    if (!is_there && !shrinks) return false;  // of no longer period before this one is decided
-    if (!map_.close(design, static_cast<int>(period), seen.back(), orbit)) return false;
+    const bool shrinks = factor < 1.0 && std::abs(factor - gaps[1] / gaps[2]) < alike(factor);
+    // Of no longer period before this one is decided: two rounds shrink, too.
+    if (gaps[0] >= near && !(shrinks && gaps[0] < nearing)) continue;
+    if (gaps[0] >= near || !(is_there || (shrinks && factor < contracts))) return false;
+    const double rest = is_there ? 0.0 : way * factor / (1.0 - way * factor);  // of a geometric series
+    if (!map_.close(design, static_cast<int>(period), moved(seen.back(), rest * rounds[0]), orbit))
+      return false;
     const double multiplier = std::abs(orbit.multiplier);
-    return multiplier < contracts && (is_there || std::abs(multiplier - factor) < alike);
+    return multiplier < contracts && (is_there || std::abs(multiplier - factor) < alike(multiplier)) &&
+           is_near(seen.back(), gaps[0], orbit);
   }
   return false;
 }
@@ -124,10 +142,7 @@ bool GaitSolver::find_orbit(const Design& design, std::span<const Landed> seen, 
     const double gap = between(seen[0], seen[period]).lpNorm<Eigen::Infinity>();
     if (!(gap < scene_.gait_tolerance) && !shrinks(seen, period)) continue;
     if (!map_.close(design, static_cast<int>(period), seen[0], orbit)) continue;
-    if (!(std::abs(orbit.multiplier) < 1.0)) continue;
-    // What it has not yet come near by is a geometric series of gaps.
-    const double left = between(seen[0], orbit.landings.back()).lpNorm<Eigen::Infinity>();
-    if (left <= 10.0 * gap / (1.0 - std::abs(orbit.multiplier)) + 1e-9) return true;
+    if (std::abs(orbit.multiplier) < 1.0 && is_near(seen[0], gap, orbit)) return true;
   }
   return false;
 }

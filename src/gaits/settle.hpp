@@ -28,7 +28,7 @@ class GaitSolver {
   /// What is known of a design on its way.
   struct Course {
     long jumps = 0, next_look = 24;
-    std::vector<Landed> seen{};  ///< the last landings
+    std::vector<Landed> seen{};  ///< the last landings, at least as many as a look is at
     bool settled = false;
   };
   void follow(std::span<const Design> designs, const std::function<void(std::size_t, const Orbit&)>& found);

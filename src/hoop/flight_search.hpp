@@ -111,7 +111,8 @@ Flight<S> walk_toss(const Toss<S>& toss, const S& launch = S(0)) {
 inline constexpr int most_climbs = 6;
 
 /// A toss up to its apex, in psi and heights of rho, and where to look for its landing: it is between
-/// last_apex and sunk, where y only falls. Height zero: it never clears the plane.
+/// last_apex and sunk, where y only falls; of one that climbs often it is `sunk` itself. Height zero: it
+/// never clears the plane.
 template <class T>
 struct Ascent {
   T height = T(0), apex = T(0), last_apex = T(0), sunk = T(0), dip = T(0);
@@ -236,6 +237,8 @@ Ascent<T> ascend(const Toss<T>& toss, const MaskOf<T>& wanted) {
     const Flight<T> flight = toss_detail::walk(toss, often);
     ascent.height = select(often, flight.height, ascent.height);
     ascent.apex = select(often, flight.apex_time, ascent.apex);
+    ascent.sunk = select(often, flight.flight_time, ascent.sunk);
+    ascent.dip = select(often, flight.dip, ascent.dip);
   }
   return ascent;
 }
@@ -247,7 +250,7 @@ Flight<T> descend(const Toss<T>& toss, const Ascent<T>& ascent, const MaskOf<T>&
   using std::sqrt;
   const T pi(std::numbers::pi_v<ScalarOf<T>>), epsilon(std::numeric_limits<ScalarOf<T>>::epsilon());
   const MaskOf<T> flies = wanted & (ascent.apex > T(0));
-  const MaskOf<T> often = flies & toss_detail::climbs_often(toss), seldom = flies & !often;
+  const MaskOf<T> often = toss_detail::climbs_often(toss), seldom = flies & !often;
   T dip = select(flies, ascent.dip, T(0));
   const MaskOf<T> dips = seldom & (toss.top > T(2) * (pi - toss.opening));
   if (any(dips)) {
@@ -261,13 +264,7 @@ Flight<T> descend(const Toss<T>& toss, const Ascent<T>& ascent, const MaskOf<T>&
       ascent.last_apex + smaller(sqrt(T(-2) * apex.value / apex.curvature), T(ScalarOf<T>(0.93L)) * fall);
   const T landing = polish_root([&](const T& psi) { return toss_height(toss, psi); }, ascent.last_apex,
                                 ascent.sunk, guess, wanted & !wanted, T(2) * epsilon * ascent.sunk, seldom);
-  Flight<T> flight{ascent.height, ascent.apex, select(flies, landing, T(0)), dip};
-  if (any(often)) {
-    const Flight<T> walked = toss_detail::walk(toss, often);
-    flight.flight_time = select(often, walked.flight_time, flight.flight_time);
-    flight.dip = select(often, walked.dip, dip);
-  }
-  return flight;
+  return {ascent.height, ascent.apex, select(flies, select(often, ascent.sunk, landing), T(0)), dip};
 }
 
 /// A toss's flight in its units.

@@ -161,9 +161,9 @@ GatheredDesigns<T> gathered_designs(const F& design_of) {
 }
 
 /// The same hoop in every lane.
-template <class T>
-Hoop<T> widened(const Hoop<ScalarOf<T>>& hoop) {
-  return mapped<T>(hoop, [](const ScalarOf<T>& number) { return T(number); });
+template <class T, class S>
+Hoop<T> widened(const Hoop<S>& hoop) {
+  return mapped<T>(hoop, [](const S& number) { return T(number); });
 }
 
 /// theta [rad].

@@ -42,7 +42,7 @@ struct Scene {
   MotorLaw motor_law = MotorLaw::constant;  ///< pendulum only
   double patience = 200.0;  ///< pendulum only: without a jump until then it is stalled [sqrt(R/g)], > 0
   // Gaits; the rolling limit then counts from each landing.
-  long settle = 0;               ///< jumps to skip before a gait is searched for, in [0, 10^6]; 0: no search
+  long settle = 0;               ///< most jumps until a hoop settles on a gait, in [0, 10^6]; 0: no search
   long most_period = 16;         ///< longest period of a gait [jumps], in [1, 64]
   double gait_tolerance = 1e-3;  ///< distance of landings that count as equal [rad, sqrt(g/R)], in (0, 1]
   double rest_speed = 1e-3;      ///< Coulomb only: a slower rebound counts as zero [sqrt(g R)], >= 0

@@ -19,10 +19,10 @@ std::size_t product(const std::vector<std::size_t>& extents) {
 /// Doubles the shortest side that can still grow until the tile is as large as it should be. Then each
 /// side is shortened as far as the number of tiles along it allows: what reaches over the map's edge would be
 /// encoded, too.
-std::vector<std::size_t> balanced_tile(const std::vector<std::size_t>& shape, std::size_t most) {
-  constexpr std::size_t smallest = 64, wanted_tiles = 64;
-  const std::size_t target =
-      std::bit_floor(std::min(most, std::max(product(shape) / wanted_tiles, smallest)));
+std::vector<std::size_t> balanced_tile(const std::vector<std::size_t>& shape, std::size_t most,
+                                       std::size_t least) {
+  constexpr std::size_t wanted_tiles = 64;
+  const std::size_t target = std::bit_floor(std::min(most, std::max(product(shape) / wanted_tiles, least)));
   std::vector<std::size_t> tile(shape.size(), 1);
   while (product(tile) < target) {
     std::size_t shortest = shape.size();
@@ -53,8 +53,8 @@ Tiling::Tiling(std::vector<std::size_t> shape, std::vector<std::size_t> tile_sha
   tiles_ = product(tiles_along_);
 }
 
-Tiling::Tiling(std::vector<std::size_t> shape, std::size_t most)
-    : Tiling(shape, balanced_tile(shape, most)) {}
+Tiling::Tiling(std::vector<std::size_t> shape, std::size_t most, std::size_t least)
+    : Tiling(shape, balanced_tile(shape, most, least)) {}
 
 Tiling Tiling::part(std::vector<std::size_t> numbers) const {
   assert(!is_part_);

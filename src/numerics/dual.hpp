@@ -28,6 +28,12 @@ struct Dual {
   /// A constant.
   explicit Dual(const T& constant) : value(constant) {}
   explicit Dual(Scalar constant) requires(!std::is_same_v<T, Scalar>) : value(constant) {}
+  /// The same in every lane.
+  template <class S>
+  explicit Dual(const Dual<S, N>& same) requires(std::is_same_v<S, Scalar> && !std::is_same_v<T, S>)
+      : value(same.value) {
+    for (std::size_t k = 0; k < N; ++k) by[k] = T(same.by[k]);
+  }
   /// Parameter number k.
   static Dual parameter(const T& value, std::size_t k) {
     Dual x(value);
@@ -162,13 +168,26 @@ struct Dual {
   }
 };
 
-/// Of the values: to and from numbers derivatives are neither loaded nor stored.
+/// Of the values: to and from numbers derivatives are neither loaded nor stored. Duals of numbers are lanes
+/// of a dual of batches.
 template <class T, std::size_t N>
 struct Lanes<Dual<T, N>> : Lanes<T> {
   static Dual<T, N> load(const ScalarOf<T>* from) { return Dual<T, N>(Lanes<T>::load(from)); }
   static void store(const Dual<T, N>& dual, ScalarOf<T>* to) { Lanes<T>::store(dual.value, to); }
-  static Dual<T, N> load(const Dual<T, N>* from) requires(Lanes<T>::count == 1) { return *from; }
-  static void store(const Dual<T, N>& dual, Dual<T, N>* to) requires(Lanes<T>::count == 1) { *to = dual; }
+  static Dual<T, N> load(const Dual<ScalarOf<T>, N>* from) {
+    Dual<T, N> dual(gathered<T>([&](std::size_t i) { return from[i].value; }));
+    for (std::size_t k = 0; k < N; ++k)
+      dual.by[k] = gathered<T>([&](std::size_t i) { return from[i].by[k]; });
+    return dual;
+  }
+  static void store(const Dual<T, N>& dual, Dual<ScalarOf<T>, N>* to) {
+    const LaneArray<T> values = lanes_of(dual.value);
+    for (std::size_t i = 0; i < values.size(); ++i) to[i].value = values[i];
+    for (std::size_t k = 0; k < N; ++k) {
+      const LaneArray<T> by = lanes_of(dual.by[k]);
+      for (std::size_t i = 0; i < by.size(); ++i) to[i].by[k] = by[i];
+    }
+  }
 };
 
 template <class T, std::size_t N>

@@ -22,7 +22,7 @@ struct SpectralPanel {
   using Number = ScalarOf<S>;
   using Numbers = std::array<Number, n>;
   using Values = std::array<S, n>;
-  using T = std::conditional_t<std::is_same_v<S, double>, Batch, S>;  ///< nodes in lanes
+  using T = AbreastOf<S>;  ///< nodes in lanes
   /// Nodes in a T; one where its lanes are panels of their own.
   static constexpr std::size_t width = std::is_same_v<T, S> ? 1 : Lanes<T>::count;
   static_assert(n % width == 0);
@@ -226,7 +226,9 @@ struct SpectralPanel {
     return values;
   }
   static S sum(const T& value) {
-    if constexpr (width > 1) {
+    if constexpr (width > 1 && has_derivatives<T>) {
+      return sum_of_lanes(value);
+    } else if constexpr (width > 1) {
       return hadd(value);
     } else {
       return value;
@@ -234,8 +236,8 @@ struct SpectralPanel {
   }
   /// Values times as many factors.
   static T times(const Number* factors, const T& values) {
-    if constexpr (has_derivatives<S>) {
-      return values * *factors;
+    if constexpr (has_derivatives<T>) {
+      return scaled(values, Lanes<ValueOf<T>>::load(factors));
     } else if constexpr (width == 1) {
       return T(*factors) * values;
     } else {

@@ -194,7 +194,7 @@ const std::array other_keys{
            "settle",
            IntegerSlot{[](Spec& s) -> long& { return s.scene.settle; }},
            "1",
-           "transient: jumps to skip before a gait is searched for; 0: no search; 500 if another key of this "
+           "transient: most jumps until a hoop settles on a gait; 0: no search; 500 if another key of this "
            "section is given",
            {0, 1'000'000}},
     Option{"gait",

@@ -136,6 +136,25 @@ TEST(CoulombLanes, JumpsOfDesignsOnTheirOwnAreThoseInRoundsToTheLastBit) {
   }
 }
 
+TEST(CoulombLanes, WithoutTimesFindTheSameJumps) {
+  const std::vector<Design> designs = designs_of_three_kinds(300);
+  constexpr double tolerance = 1e-10;
+  std::vector<Outcome> timed(designs.size()), untimed(designs.size());
+  CoulombLanes<Batch>(tolerance).solve(designs, coulomb, timed);
+  CoulombLanes<Batch>(tolerance, false).solve(designs, coulomb, untimed);
+  for (std::size_t i = 0; i < designs.size(); ++i) {
+    ASSERT_TRUE(same_flags(timed[i], untimed[i])) << i;
+    EXPECT_TRUE(std::isnan(untimed[i].jump_time) && std::isnan(untimed[i].first_jump_time)) << i;
+    if (timed[i].status != Status::jumped) continue;
+    EXPECT_GT(timed[i].jump_time, 0.0) << i;
+    // Slides may end on other panels, where the time before tells how well their ends are known.
+    EXPECT_NEAR(untimed[i].jump_height, timed[i].jump_height, 10.0 * tolerance) << i;
+    EXPECT_NEAR(untimed[i].jump_distance, timed[i].jump_distance, 10.0 * tolerance * timed[i].jump_distance)
+        << i;
+    EXPECT_NEAR(untimed[i].flight_time, timed[i].flight_time, 10.0 * tolerance * timed[i].flight_time) << i;
+  }
+}
+
 TEST(CoulombLanes, AnExceptionLeavesNothingToTheNextCall) {
   const std::vector<Design> designs = designs_of_three_kinds(300);
   std::vector<Outcome> right(designs.size()), told(designs.size());

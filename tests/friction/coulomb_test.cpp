@@ -323,6 +323,18 @@ TEST(Coulomb, KineticFrictionAboveStaticCountsAsStatic) {
   EXPECT_EQ(a.jump_height, b.jump_height);
 }
 
+TEST(Coulomb, ASwingOfEightPhasesIsSeenToComeToRest) {
+  // Rolling and sliding by turns, four times each to and fro: no divisor of twelve.
+  Design design;
+  design.slope = 0.0675252792, design.mass_ratio = 14.0288556, design.offset_ratio = 0.923358052;
+  design.release_angle = 2.91329294, design.release_spin = 0.0251115603, design.mu_static = 0.704857915;
+  std::vector<Outcome> outcome(1);
+  CoulombLanes<Batch>(1e-9).solve({&design, 1}, coulomb, outcome);
+  EXPECT_EQ(outcome[0].status, Status::stalled);
+  EXPECT_EQ(CoulombSolver<double>(1e-9).solve(design, coulomb).status, Status::stalled);
+  EXPECT_EQ(CoulombIntegration(adaptive("gsl-rk8pd", 1e-10)).solve(design, coulomb).status, Status::stalled);
+}
+
 TEST(Coulomb, ALongBalancedSlideIsFollowedToTheRunwaysEnd) {
   Design design;
   design.slope = 0.31179491284058136, design.mass_ratio = 4.2305622156523883,

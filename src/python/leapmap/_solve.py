@@ -32,7 +32,7 @@ def solve(*, hoop=None, friction="sticking", jumps=1, settle=0, most_period=16, 
         Number of jumps to follow, 1 to 250; the fields of later ones are jump_height_2, jump_time_2 and so
         on.
     settle : int, default 0
-        Transient: number of jumps to skip before a gait is searched for; 0: no search.
+        Transient: most jumps until a hoop settles on a gait; 0: no search.
     most_period : int, default 16
         Longest period of a gait to search for, in jumps.
     fields : sequence of str, optional

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// When hoops have settled on a gait, on return maps that are known: r x (1 - x) in place of jumps.
+#include "gaits/settle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "trajectory/sequence.hpp"
+
+namespace leapmap {
+namespace {
+
+constexpr long settle = 500;
+constexpr int most_period = 16;
+
+/// What a hoop does whose landings are the logistic map's.
+struct Followed {
+  Outcome outcome;
+  long jumps = 0;  ///< that it was followed
+};
+
+Followed follow(double r, double from) {
+  Followed followed;
+  const auto jumped = [] {
+    Outcome outcome;
+    outcome.status = Status::jumped, outcome.jump_height = 0.5, outcome.flight_time = 1.0;
+    return outcome;
+  };
+  const auto next = [r](const auto& x) { return r * x * (1.0 - x); };
+  const auto jumps = [&](Start, std::span<const Design>, std::span<ContactState<double>> states,
+                         std::span<Outcome> outcomes) {
+    for (ContactState<double>& at : states) at.angle = next(at.angle), at.time += 1.0;
+    for (Outcome& outcome : outcomes) outcome = jumped();
+  };
+  const auto counted = [&](Start start, std::span<const Design> designs,
+                           std::span<ContactState<double>> states, std::span<Outcome> outcomes) {
+    ++followed.jumps;
+    jumps(start, designs, states, outcomes);
+  };
+  const auto duals = [&](Start, const Design&, ContactState<StateDual>& at, const PutDual<StateDual>&) {
+    at.angle = StateDual(r) * at.angle * (StateDual(1.0) - at.angle);
+    return jumped();
+  };
+  Scene scene;
+  scene.settle = settle, scene.most_period = most_period;
+  const std::vector<Design> design{{.release_angle = from}};
+  std::vector<Outcome> outcome{jumped()};
+  GaitSolver(scene, {in_rounds(counted), jumps, duals}).solve(design, outcome);
+  followed.outcome = outcome[0];
+  return followed;
+}
+
+/// The slope along an orbit that is drawn to it, after a hundred thousand rounds.
+double multiplier_of(double r, double from, int period) {
+  double x = from, slope = 1.0;
+  for (long k = 0; k < 100'000L * period; ++k) x = r * x * (1.0 - x);
+  for (int k = 0; k < period; ++k) slope *= r * (1.0 - 2.0 * x), x = r * x * (1.0 - x);
+  return slope;
+}
+
+TEST(Settling, EndsAsSoonAsAnOrbitIsPlain) {
+  struct Known {
+    double r;
+    int period;
+    long most_jumps;
+  };
+  // By r: the doubling of periods, the window of period 6, that of 3; r = 2.97 and 3.01 are slow.
+  for (const auto& [r, period, most_jumps] :
+       {Known{2.8, 1, 60}, Known{2.97, 1, 250}, Known{3.01, 2, 400}, Known{3.2, 2, 40}, Known{3.5, 4, 60},
+        Known{3.555, 8, 100}, Known{3.6275, 6, 150}, Known{3.835, 3, 60}, Known{3.845, 6, 100}})
+    for (const double from : {0.1, 0.37, 0.85}) {
+      const auto& [outcome, jumps] = follow(r, from);
+      EXPECT_EQ(outcome.gait_period, period) << r;
+      // Of 16 digits an orbit's slope has some ten where factors of 1/1000 are among them.
+      EXPECT_NEAR(outcome.gait_multiplier, multiplier_of(r, from, period), 1e-10) << r;
+      EXPECT_LE(jumps, most_jumps) << r << " from " << from;
+    }
+}
+
+TEST(Settling, IsNotBelievedOfWhatOnlyPassesBy) {
+  // Chaos, and just before the window of period 3: it passes where the orbit will be for a hundred jumps, and
+  // more slowly from one to the next.
+  for (const double r : {3.7, 3.8, 3.99, 3.8284, 3.82841, 3.828425, 3.8284265})
+    for (const double from : {0.1, 0.37, 0.5, 0.85}) {
+      const auto& [outcome, jumps] = follow(r, from);
+      EXPECT_EQ(outcome.gait_period, Outcome::no_gait) << r << " from " << from;
+      EXPECT_EQ(jumps, settle + most_period);
+    }
+}
+
+TEST(Settling, OfAnOrbitThatDoublesItsPeriodIsFoundOnEitherSide) {
+  // At r = 3 the orbit's multiplier is -1. Close by it takes thousands of jumps.
+  EXPECT_EQ(follow(2.99, 0.3).outcome.gait_period, 1);
+  EXPECT_EQ(follow(3.01, 0.3).outcome.gait_period, 2);
+  for (const double r : {2.999, 3.001}) {
+    const auto& [outcome, jumps] = follow(r, 0.3);
+    EXPECT_TRUE(outcome.gait_period == (r < 3.0 ? 1 : 2) || outcome.gait_period == Outcome::no_gait) << r;
+    EXPECT_EQ(jumps, settle + most_period) << r;
+  }
+}
+
+}  // namespace
+}  // namespace leapmap
