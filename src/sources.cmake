@@ -141,7 +141,10 @@ set(LEAPMAP_SOURCES
   src/referee/referee.cpp
   src/referee/referee_coulomb.cpp
   src/referee/robot.cpp
-  src/referee/robot_referee.cpp
+  src/referee/robot_contact.cpp
+  src/referee/robot_flight.cpp
+  src/referee/robot_motor.cpp
+  src/referee/robot_run.cpp
   src/request/request.cpp
   src/request/solver.cpp
   src/shards/join.cpp

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <span>
 
 #include "referee/largest.hpp"
 #include "referee/robot.hpp"
@@ -34,40 +33,16 @@ StepControl control_of(const Scene& scene, double tolerance) {
 
 }  // namespace
 
-/// Samples guards, which are functions of the state alone: their rates are their changes along the motion's
-/// straight continuation.
-struct Referee::Sampled {
+struct Referee::Moving {
+  using Y = State<6>;
+  using Motion = referee::Motion;
   const Body& body;
   const Mode& mode;
-  const std::vector<Guard>& guards;
   double unit_of_spin;
 
-  void all(const Y& y, std::span<Sample<double>> samples) const {
-    const Around around = around_of(y);
-    std::ranges::transform(guards, samples.begin(), [&](const Guard& guard) { return around.sample(guard); });
-  }
-  Sample<double> operator()(std::size_t number, const Y& y) const {
-    return around_of(y).sample(guards[number]);
-  }
-
- private:
-  /// A state, and those a moment later and earlier.
-  struct Around {
-    Motion at, ahead, behind;
-    double moment;
-
-    Sample<double> sample(const Guard& guard) const {
-      return {guard(at), (guard(ahead) - guard(behind)) / (2.0 * moment)};
-    }
-  };
-  Around around_of(const Y& y) const {
-    const Motion at = motion_of(y);
-    const Y f = derivative(body, mode, at);
-    const double moment = 1e-5 / (std::abs(at.spin) + unit_of_spin);
-    Y ahead = y, behind = y;
-    for (std::size_t i = 0; i < y.size(); ++i) ahead[i] += moment * f[i], behind[i] -= moment * f[i];
-    return {at, motion_of(ahead), motion_of(behind), moment};
-  }
+  Motion motion(const Y& y) const { return motion_of(y); }
+  Y rates(const Motion& at) const { return derivative(body, mode, at); }
+  double moment(const Motion& at) const { return 1e-5 / (std::abs(at.spin) + unit_of_spin); }
 };
 
 Referee::Referee(const Scene& scene, double tolerance, long most_steps)
@@ -89,7 +64,8 @@ bool Referee::follow(const Mode& mode, const std::vector<Guard>& guards,
                      const std::function<bool(std::size_t)>& happens) {
   system_.mode = mode;
   const double began = time_;
-  const Sampled sample{system_.body, mode, guards, 1.0 / second_};
+  const Moving moving{system_.body, mode, 1.0 / second_};
+  const Sampled<Moving> sample(moving, guards);
   const Y start = state_of(at_);
   guarded_.begin(start, guards.size(), sample);
   if (!integrator_.start(start, 0.01 / (1.0 / second_ + std::abs(at_.spin)))) return false;

@@ -12,6 +12,7 @@
 #include "leapmap/scene.hpp"
 #include "numerics/gsl_integrator.hpp"
 #include "referee/motion.hpp"
+#include "referee/sampled.hpp"
 
 namespace leapmap::referee {
 
@@ -31,9 +32,8 @@ class Referee {
   bool meets_forces = false;
 
  private:
-  /// Falls through zero where something happens.
-  using Guard = std::function<double(const Motion&)>;
-  struct Sampled;
+  using Guard = GuardOf<Motion>;
+  struct Moving;
   struct System {
     Body body;
     Mode mode;
