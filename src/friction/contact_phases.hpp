@@ -100,28 +100,32 @@ class PhaseSequence {
 
 /// Sees a hoop rock to rest: every phase of a cycle comes again in its place with less spin, and what a cycle
 /// travels shrinks so fast that all that is left of it is next to nothing. The plane is the same everywhere,
-/// so that there is nothing but the angle to tell one swing from another. Cycles of 1 to 8, 10, 12, 14 or 16
-/// phases are seen, and only after those that phase_sequence holds.
+/// so that there is nothing but the angle to tell one swing from another. Cycles of 2, 3, 4, 6 or 12 phases
+/// are seen, and only after those that phase_sequence holds. After many phases those of up to 8, 10, 14 or 16
+/// are, too, and it is enough that the fastest phase of a cycle loses spin: the others begin sooner or later
+/// in a swing from cycle to cycle.
 class Rocking {
  public:
-  /// Forgets what it has seen.
-  void restart() { count_ = shrinking_ = tried_ = 0; }
+  /// Forgets what it has seen, for less than it takes to make another one.
+  void restart() { count_ = 0, shrinking_ = {}; }
   /// Looks at a phase as it begins; direction: of sliding. True: it rocks to rest.
   bool settles(Phase phase, int direction, double travel, double angle, double spin) {
     begun_[static_cast<std::size_t>(count_++ % remembered)] = {phase, direction, travel, angle, spin};
-    const int cycle = cycles[static_cast<std::size_t>(tried_)];
-    if (count_ <= 2 * cycle) return false;
-    if (!comes_again(ago(2 * cycle), ago(cycle), ago(0))) {
-      tried_ = (tried_ + 1) % static_cast<int>(cycles.size()), shrinking_ = 0;
-      return false;
+    bool rests = false;
+    for (std::size_t k = 0; k < cycles.size() && !rests && (k == 0 || count_ > many); ++k) {
+      const int cycle = cycles[k];
+      const bool again = count_ > 2 * cycle && comes_again(ago(2 * cycle), ago(cycle), ago(0)) &&
+                         (count_ > many ? fastest(0, cycle) < fastest(cycle, cycle)
+                                        : std::abs(spin) < std::abs(ago(cycle).spin));
+      shrinking_[k] = again ? shrinking_[k] + 1 : 0;
+      rests = count_ > 32 && shrinking_[k] >= cycle;
     }
-    ++shrinking_;
-    return count_ > 32 && shrinking_ >= cycle;
+    return rests;
   }
 
  private:
   static constexpr std::array cycles{12, 8, 10, 14, 16};  // each of its divisors, too
-  static constexpr int remembered = 33;                   // two of the longest, and the phase that begins
+  static constexpr int many = 256, remembered = 33;       // two of the longest, and the phase that begins
   struct Begun {
     Phase phase{};
     int direction = 0;
@@ -131,19 +135,26 @@ class Rocking {
   const Begun& ago(int phases) const {
     return begun_[static_cast<std::size_t>((count_ - 1 - phases) % remembered)];
   }
+  /// Of so many phases, before the last `later` ones.
+  double fastest(int later, int phases) const {
+    double spin = 0.0;
+    for (int k = 0; k < phases; ++k) spin = std::max(spin, std::abs(ago(later + k).spin));
+    return spin;
+  }
   static bool comes_again(const Begun& first, const Begun& before, const Begun& now) {
-    constexpr double nothing = 0.1;  // [R, rad]
+    constexpr double nothing = 0.1;  // [R, rad, sqrt(g/R)]
     // of a cycle, and the share of it that the next one has
     const double drift = std::abs(now.travel - before.travel),
                  share = drift / std::abs(before.travel - first.travel);
     return now.phase != Phase::flight && before.phase == now.phase && before.direction == now.direction &&
-           before.spin * now.spin > 0.0 && std::abs(now.spin) < std::abs(before.spin) && share < 1.0 &&
-           drift * share / (1.0 - share) < nothing && std::abs(now.angle - before.angle) < nothing;
+           before.spin * now.spin > 0.0 && std::abs(now.spin) - std::abs(before.spin) < nothing &&
+           share < 1.0 && drift * share / (1.0 - share) < nothing &&
+           std::abs(now.angle - before.angle) < nothing;
   }
 
   std::array<Begun, remembered> begun_{};
-  int count_ = 0, shrinking_ = 0;
-  int tried_ = 0;  // which of the cycles
+  std::array<int, cycles.size()> shrinking_{};
+  int count_ = 0;
 };
 
 }  // namespace leapmap

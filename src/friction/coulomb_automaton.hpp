@@ -235,11 +235,11 @@ class PhaseMachine {
   Hoop<S> hoop_;
   Contact<S> contact_;
   S runway_, resistance_;
-  S released_{0}, slipped_{0};
-  S driven_{0};          // work of the motor
-  ContactState<S> at_;   // where the last phase began, or where all ended
-  bool slides_ = false;  // in the phase told last
-  bool held_ = false;    // it begins at rest, and the resisting torque is the larger one
+  S released_, slipped_;
+  S driven_;            // work of the motor
+  ContactState<S> at_;  // where the last phase began, or where all ended
+  bool slides_;         // in the phase told last
+  bool held_;           // it begins at rest, and the resisting torque is the larger one
   PhaseSequence sequence_;
   Rocking rocking_;
   Outcome outcome_;

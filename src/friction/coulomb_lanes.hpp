@@ -22,7 +22,7 @@ class CoulombLanes {
 
   /// tolerance: relative, of times; angles, spins and heights follow. timed: whether the time before a jump
   /// is wanted; without it rolling takes none, jump_time and first_jump_time are NaN, and states have no
-  /// times.
+  /// times; other numbers may differ in digits beyond the tolerance.
   explicit CoulombLanes(double tolerance, bool timed = true)
       : with_times_(timed),
         rolling_(tolerance, most_on_their_way, timed),

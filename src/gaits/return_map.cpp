@@ -70,7 +70,7 @@ JumpSolvers jump_solvers(const Scene& scene, double tolerance) {
   const auto state_jumps = need(model, &Model::state_jumps, "derivatives of later jumps");
   return {model.long_jumps ? model.long_jumps(alone, tolerance, untimed)
                            : in_rounds(jumps(alone, tolerance, untimed)),
-          jumps(alone, tolerance, {}), state_jumps(alone, tolerance)};
+          jumps(alone, tolerance, {}), state_jumps(alone, tolerance), tolerance};
 }
 
 void ReturnMap::follow(Start start, std::span<const Design> designs, std::span<Landed> states,
@@ -101,7 +101,8 @@ bool ReturnMap::go_round(const Design& design, int period, Landed& at, StateMatr
 bool ReturnMap::close(const Design& design, int period, const Landed& near, Orbit& orbit) {
   constexpr int most_steps = 40;
   constexpr double farthest = 0.3;  // [rad, sqrt(g/R)] that one step may go
-  constexpr double last = 1e-12;    // after a step as short as this the next would be lost in rounding
+  constexpr double last = 1e-12;    // a step after which the next would be lost in rounding; the slope is
+                                    // that of the place before it
   Landed at = near;
   StateMatrix slope;
   double before = std::numeric_limits<double>::infinity();
@@ -122,7 +123,7 @@ bool ReturnMap::close(const Design& design, int period, const Landed& near, Orbi
 }
 
 bool go_once_round(const JumpSolver<double>& jumps, const Scene& scene, const Design& design, int period,
-                   const Landed& start, Orbit& orbit) {
+                   const Landed& start, Orbit& orbit, double near) {
   orbit = {};
   const double second = time_unit(scene);
   const Hoop<double> hoop = reduce<double>(design, scene);
@@ -139,7 +140,7 @@ bool go_once_round(const JumpSolver<double>& jumps, const Scene& scene, const De
     work += hoop.motor() * ((at.angle - from.angle) - at.turned_in_flight);
     orbit.height += outcome.jump_height / period;
     time += at.time * second, travel += at.travel;
-    const bool is_back = between(start, orbit.landings.back()).lpNorm<Eigen::Infinity>() < 1e-8;
+    const bool is_back = between(start, orbit.landings.back()).lpNorm<Eigen::Infinity>() < near;
     if (is_back && k + 1 < period) return false;  // it is of a shorter period
   }
   orbit.speed = travel * scene.radius / time;
@@ -150,7 +151,8 @@ bool go_once_round(const JumpSolver<double>& jumps, const Scene& scene, const De
 
 bool ReturnMap::describe(const Design& design, int period, const Landed& start, const StateMatrix& slope,
                          Orbit& orbit) {
-  if (!go_once_round(solvers_.timed_jumps, scene_, design, period, start, orbit)) return false;
+  const double near = std::max(1e-8, nearness());
+  if (!go_once_round(solvers_.timed_jumps, scene_, design, period, start, orbit, near)) return false;
   orbit.multiplier = largest_eigenvalue(slope);
   return true;
 }

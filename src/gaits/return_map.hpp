@@ -51,9 +51,9 @@ struct Orbit {
 };
 
 /// Goes `period` jumps on from a landing and tells them, but for the multiplier. False: it does not make
-/// them, or is back before.
+/// them, or has come as near to where it began before the last of them.
 bool go_once_round(const JumpSolver<double>& jumps, const Scene& scene, const Design& design, int period,
-                   const Landed& start, Orbit& orbit);
+                   const Landed& start, Orbit& orbit, double near = 1e-8);
 
 /// Of a jump its flight, and no time before it.
 inline constexpr Wanted untimed{
@@ -64,6 +64,7 @@ struct JumpSolvers {
   LongJumpSolver<double> jumps;    ///< untimed
   JumpSolver<double> timed_jumps;  ///< with all that there is
   DualJumpSolver<StateDual> duals;
+  double tolerance;  ///< relative, of times: so far solvers may differ
 };
 /// Those of the scene's model. tolerance: relative, of times.
 JumpSolvers jump_solvers(const Scene& scene, double tolerance);
@@ -87,6 +88,9 @@ class ReturnMap {
   /// The orbit of that period near a state, by Newton's iteration to rounding. False: there is none, or one
   /// of a shorter period that divides it.
   bool close(const Design& design, int period, const Landed& near, Orbit& orbit);
+
+  /// How far one round of jumps and one of duals may end from each other.
+  double nearness() const { return 10.0 * solvers_.tolerance; }
 
  private:
   bool describe(const Design& design, int period, const Landed& at, const StateMatrix& slope, Orbit& orbit);

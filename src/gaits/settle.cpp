@@ -54,6 +54,7 @@ void GaitSolver::follow(std::span<const Design> designs,
     throw_if_stopped();
     const bool more = goes_on(designs[i], states_[i], courses_[i], orbit);
     if (courses_[i].settled) found(i, orbit);
+    if (!more && courses_[i].jumps < scene_.settle) courses_[i].seen = {};
     return more;
   });
   for (std::size_t i = 0; i < designs.size(); ++i)
@@ -83,10 +84,19 @@ bool GaitSolver::goes_on(const Design& design, const Landed& landed, Course& cou
 namespace {
 
 /// Whether an orbit is where one is that is drawn to it, and was a gap away from there a round before or
-/// later: what it has not yet come near by is a geometric series of gaps.
-bool is_near(const Landed& at, double gap, const Orbit& orbit) {
+/// later: what it has not yet come near by is a geometric series of gaps, and of how far each round of the
+/// solver that closed the orbit may end from one of the jumps.
+bool is_near(const Landed& at, double gap, const Orbit& orbit, double of_solvers) {
   const double left = between(at, orbit.landings.back()).lpNorm<Eigen::Infinity>();
-  return left <= 10.0 * gap / (1.0 - std::abs(orbit.multiplier)) + 1e-9;
+  return left <= (10.0 * gap + of_solvers) / (1.0 - std::abs(orbit.multiplier)) + 1e-9;
+}
+
+/// Where a sequence goes to whose differences shrink by one factor, by Aitken; the last comes first.
+double limit_of(const std::array<double, 3>& sequence) {
+  const auto& [last, before, first] = sequence;
+  const double step = last - before;
+  return std::abs(step) < std::abs(before - first) ? last - step * step / (step - (before - first))
+                                                   : HUGE_VAL;
 }
 
 }  // namespace
@@ -108,15 +118,18 @@ bool GaitSolver::is_settled(const Design& design, std::span<const Landed> seen, 
     const double factor = gaps[0] / gaps[1], way = rounds[0].dot(rounds[1]) < 0.0 ? -1.0 : 1.0;
     const bool is_there = gaps[0] < rounding && gaps[1] < 1e-6;
     const bool shrinks = factor < 1.0 && std::abs(factor - gaps[1] / gaps[2]) < alike(factor);
-    // Of no longer period before this one is decided: two rounds shrink, too.
-    if (gaps[0] >= near && !(shrinks && gaps[0] < nearing)) continue;
-    if (gaps[0] >= near || !(is_there || (shrinks && factor < contracts))) return false;
+    if (gaps[0] >= near) {
+      // Where these gaps are about to vanish, those of two rounds do so, too, and first.
+      if (gaps[0] < nearing && limit_of(gaps) < 0.2 * gaps[0]) return false;
+      continue;
+    }
+    if (!is_there && !(shrinks && factor < contracts)) return false;           // nor of any longer period
     const double rest = is_there ? 0.0 : way * factor / (1.0 - way * factor);  // of a geometric series
     if (!map_.close(design, static_cast<int>(period), moved(seen.back(), rest * rounds[0]), orbit))
       return false;
     const double multiplier = std::abs(orbit.multiplier);
     return multiplier < contracts && (is_there || std::abs(multiplier - factor) < alike(multiplier)) &&
-           is_near(seen.back(), gaps[0], orbit);
+           is_near(seen.back(), gaps[0], orbit, map_.nearness());
   }
   return false;
 }
@@ -142,7 +155,7 @@ bool GaitSolver::find_orbit(const Design& design, std::span<const Landed> seen, 
     const double gap = between(seen[0], seen[period]).lpNorm<Eigen::Infinity>();
     if (!(gap < scene_.gait_tolerance) && !shrinks(seen, period)) continue;
     if (!map_.close(design, static_cast<int>(period), seen[0], orbit)) continue;
-    if (std::abs(orbit.multiplier) < 1.0 && is_near(seen[0], gap, orbit)) return true;
+    if (std::abs(orbit.multiplier) < 1.0 && is_near(seen[0], gap, orbit, map_.nearness())) return true;
   }
   return false;
 }

@@ -10,8 +10,9 @@
 
 namespace leapmap {
 
-/// Lets designs jump Scene::settle times, sees whether they repeat themselves, and closes the orbit that they
-/// are near. A thread's own workspace.
+/// Lets designs jump until they come nearer to an orbit by the same factor from round to round, at most
+/// Scene::settle times and as often again as the longest period has jumps, and closes that orbit. A thread's
+/// own workspace.
 class GaitSolver {
  public:
   GaitSolver(const Scene& scene, JumpSolvers solvers) : scene_(scene), map_(scene, std::move(solvers)) {}

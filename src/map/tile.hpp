@@ -22,7 +22,7 @@ class Tiling {
   Tiling(std::vector<std::size_t> shape, std::vector<std::size_t> tile_shape);
   /// Cuts a map into tiles of neighbours about equally long along each dimension: so many that work divides
   /// evenly, so large that a tile's overhead does not matter, but of no more than `most` designs, and in a
-  /// small map about `least`. Depends on these only, never on the machine.
+  /// small map of half to all of `least`. Depends on these only, never on the machine.
   explicit Tiling(std::vector<std::size_t> shape, std::size_t most = 16384, std::size_t least = 64);
 
   /// The same map with these of its tiles only, in this order.

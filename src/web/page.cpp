@@ -156,7 +156,7 @@ void tell_more(const Scene& scene, double tolerance, std::span<const Design> des
     ErrorGrowth(scene, dual_solver(alone, tolerance)).tell(designs, outcomes);
   if (scene.settle > 0)
     GaitSolver(scene, {in_rounds(jump_solver(alone, tolerance, untimed)), jump_solver(alone, tolerance),
-                       dual_solver(alone, tolerance)})
+                       dual_solver(alone, tolerance), tolerance})
         .solve(designs, outcomes);
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "friction/coulomb.hpp"
@@ -149,9 +150,14 @@ TEST(CoulombLanes, WithoutTimesFindTheSameJumps) {
     EXPECT_GT(timed[i].jump_time, 0.0) << i;
     // Slides may end on other panels, where the time before tells how well their ends are known.
     EXPECT_NEAR(untimed[i].jump_height, timed[i].jump_height, 10.0 * tolerance) << i;
-    EXPECT_NEAR(untimed[i].jump_distance, timed[i].jump_distance, 10.0 * tolerance * timed[i].jump_distance)
+    EXPECT_NEAR(untimed[i].jump_distance, timed[i].jump_distance,
+                10.0 * tolerance * std::abs(timed[i].jump_distance))
         << i;
     EXPECT_NEAR(untimed[i].flight_time, timed[i].flight_time, 10.0 * tolerance * timed[i].flight_time) << i;
+    EXPECT_NEAR(untimed[i].landing_impulse, timed[i].landing_impulse, 100.0 * tolerance) << i;
+    EXPECT_NEAR(untimed[i].slip_distance, timed[i].slip_distance,
+                100.0 * tolerance * (1.0 + timed[i].slip_distance))
+        << i;
   }
 }
 

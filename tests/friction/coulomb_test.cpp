@@ -335,6 +335,15 @@ TEST(Coulomb, ASwingOfEightPhasesIsSeenToComeToRest) {
   EXPECT_EQ(CoulombIntegration(adaptive("gsl-rk8pd", 1e-10)).solve(design, coulomb).status, Status::stalled);
 }
 
+TEST(Coulomb, AHoopThatRocksForHundredsOfPhasesMayStillJump) {
+  // What its swings travel shrinks for a while, but their spin grows.
+  Design design;
+  design.slope = 0.1617386120353351, design.mass_ratio = 9194.353497621441;
+  design.offset_ratio = 0.8561534122820904, design.inertia_factor = 0.7425809521934303;
+  design.release_angle = -4.335112771240116, design.mu_static = 2.3548861441628266;
+  EXPECT_EQ(CoulombSolver<double>(1e-9).solve(design, coulomb).status, Status::jumped);
+}
+
 TEST(Coulomb, ALongBalancedSlideIsFollowedToTheRunwaysEnd) {
   Design design;
   design.slope = 0.31179491284058136, design.mass_ratio = 4.2305622156523883,

@@ -263,5 +263,22 @@ TEST(Options, EveryKeyIsDeclaredOnceAndInTheHelp) {
   }
 }
 
+TEST(Tiles, OfGaitsWithFrictionAreLargerAndStillMany) {
+  const auto tiles = [](std::size_t along, const std::vector<std::string>& more) {
+    std::vector<std::string> overrides{fmt::format("slope={{from=0.1,to=0.5,count={}}}", along),
+                                       fmt::format("mass_ratio={{from=1,to=9,count={}}}", along),
+                                       "scene.friction=coulomb"};
+    overrides.insert(overrides.end(), more.begin(), more.end());
+    return tiling_of(read_spec("", overrides));
+  };
+  for (const std::size_t along : {10u, 20u, 40u, 100u, 400u}) {
+    const Tiling plain = tiles(along, {}), of_gaits = tiles(along, {"gait.settle=100"});
+    EXPECT_GE(of_gaits.largest_tile(), plain.largest_tile()) << along;
+    EXPECT_GE(of_gaits.size(), along < 20 ? 1u : 6u) << along;
+  }
+  EXPECT_GE(tiles(100, {"gait.settle=100"}).largest_tile(), 256u);
+  EXPECT_LE(tiles(100, {}).largest_tile(), 128u);
+}
+
 }  // namespace
 }  // namespace leapmap
