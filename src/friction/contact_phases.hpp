@@ -115,8 +115,8 @@ class Rocking {
     for (std::size_t k = 0; k < cycles.size() && !rests && (k == 0 || count_ > many); ++k) {
       const int cycle = cycles[k];
       const bool again = count_ > 2 * cycle && comes_again(ago(2 * cycle), ago(cycle), ago(0)) &&
-                         (count_ > many ? fastest(0, cycle) < fastest(cycle, cycle)
-                                        : std::abs(spin) < std::abs(ago(cycle).spin));
+                         (std::abs(spin) < std::abs(ago(cycle).spin) ||
+                          (count_ > many && fastest(0, cycle) < fastest(cycle, cycle)));
       shrinking_[k] = again ? shrinking_[k] + 1 : 0;
       rests = count_ > 32 && shrinking_[k] >= cycle;
     }

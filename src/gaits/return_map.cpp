@@ -101,10 +101,9 @@ bool ReturnMap::go_round(const Design& design, int period, Landed& at, StateMatr
 bool ReturnMap::close(const Design& design, int period, const Landed& near, Orbit& orbit) {
   constexpr int most_steps = 40;
   constexpr double farthest = 0.3;  // [rad, sqrt(g/R)] that one step may go
-  constexpr double last = 1e-12;    // a step after which the next would be lost in rounding; the slope is
-                                    // that of the place before it
+  constexpr double exact = 1e-10;   // of a slope
   Landed at = near;
-  StateMatrix slope;
+  StateMatrix slope, slope_before = StateMatrix::Zero();
   double before = std::numeric_limits<double>::infinity();
   for (int step = 0; step < most_steps; ++step) {
     Landed there = at;
@@ -115,9 +114,12 @@ bool ReturnMap::close(const Design& design, int period, const Landed& near, Orbi
     if (!std::isfinite(length)) return false;
     if (length > farthest) move *= farthest / length;
     at = reduced(moved(at, move));
-    const bool is_rounding = length <= 1e-9 && length >= 0.25 * before;
-    if (length <= last || is_rounding) return describe(design, period, at, slope, orbit);
-    before = length;
+    // The slope is that of the place before the move: it is off by as much as it changes along there.
+    const bool is_known = length <= 1e-9 && step > 0 &&
+                          (slope - slope_before).lpNorm<Eigen::Infinity>() * length <= exact * before;
+    const bool is_rounding = length == 0.0 || (length <= 1e-9 && length >= 0.25 * before);
+    if (is_known || is_rounding) return describe(design, period, at, slope, orbit);
+    before = length, slope_before = slope;
   }
   return false;
 }
