@@ -238,7 +238,7 @@ class PhaseMachine {
   S released_, slipped_;
   S driven_;            // work of the motor
   ContactState<S> at_;  // where the last phase began, or where all ended
-  bool slides_;         // in the phase told last
+  bool slides_;         // in the current phase
   bool held_;           // it begins at rest, and the resisting torque is the larger one
   PhaseSequence sequence_;
   Rocking rocking_;

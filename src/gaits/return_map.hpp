@@ -51,7 +51,7 @@ struct Orbit {
 };
 
 /// Goes `period` jumps on from a landing and tells them, but for the multiplier. False: it does not make
-/// them, or has come as near to where it began before the last of them.
+/// them, or returns to within `near` of its start before the last of them.
 bool go_once_round(const JumpSolver<double>& jumps, const Scene& scene, const Design& design, int period,
                    const Landed& start, Orbit& orbit, double near = 1e-8);
 
@@ -64,7 +64,7 @@ struct JumpSolvers {
   LongJumpSolver<double> jumps;    ///< untimed
   JumpSolver<double> timed_jumps;  ///< with all that there is
   DualJumpSolver<StateDual> duals;
-  double tolerance;  ///< relative, of times: so far solvers may differ
+  double tolerance;  ///< of the solvers: relative, of times
 };
 /// Those of the scene's model. tolerance: relative, of times.
 JumpSolvers jump_solvers(const Scene& scene, double tolerance);
@@ -89,7 +89,7 @@ class ReturnMap {
   /// of a shorter period that divides it.
   bool close(const Design& design, int period, const Landed& near, Orbit& orbit);
 
-  /// How far one round of jumps and one of duals may end from each other.
+  /// How far apart one round may end if it is solved with derivatives and without.
   double nearness() const { return 10.0 * solvers_.tolerance; }
 
  private:

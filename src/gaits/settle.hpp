@@ -10,9 +10,8 @@
 
 namespace leapmap {
 
-/// Lets designs jump until they come nearer to an orbit by the same factor from round to round, at most
-/// Scene::settle times and as often again as the longest period has jumps, and closes that orbit. A thread's
-/// own workspace.
+/// Lets designs jump until each round brings them nearer to an orbit by the same factor, and closes that
+/// orbit. At most Scene::settle + Scene::most_period jumps are followed. A thread's own workspace.
 class GaitSolver {
  public:
   GaitSolver(const Scene& scene, JumpSolvers solvers) : scene_(scene), map_(scene, std::move(solvers)) {}
@@ -29,7 +28,7 @@ class GaitSolver {
   /// What is known of a design on its way.
   struct Course {
     long jumps = 0, next_look = 24;
-    std::vector<Landed> seen{};  ///< the last landings, at least as many as a look is at
+    std::vector<Landed> seen{};  ///< the last landings
     bool settled = false;
   };
   void follow(std::span<const Design> designs, const std::function<void(std::size_t, const Orbit&)>& found);

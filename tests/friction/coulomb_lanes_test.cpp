@@ -148,7 +148,7 @@ TEST(CoulombLanes, WithoutTimesFindTheSameJumps) {
     EXPECT_TRUE(std::isnan(untimed[i].jump_time) && std::isnan(untimed[i].first_jump_time)) << i;
     if (timed[i].status != Status::jumped) continue;
     EXPECT_GT(timed[i].jump_time, 0.0) << i;
-    // Slides may end on other panels, where the time before tells how well their ends are known.
+    // The time before a slide decides on which of its panels its end is located.
     EXPECT_NEAR(untimed[i].jump_height, timed[i].jump_height, 10.0 * tolerance) << i;
     EXPECT_NEAR(untimed[i].jump_distance, timed[i].jump_distance,
                 10.0 * tolerance * std::abs(timed[i].jump_distance))
