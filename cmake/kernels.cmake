@@ -5,6 +5,11 @@
 # (COMDAT): otherwise the linker would keep any one copy of an inline function, perhaps one for a newer
 # machine, or a slower one with other roundings.
 
+# How wide the registers are. GCC copies structures in narrower parts, and a load of a whole register that follows
+# waits until these have reached memory. Longer copies are calls: "rep movsq" is slow to begin.
+set(register_bits_of_x86-64-v3 256)
+set(register_bits_of_x86-64-v4 512)
+
 function(leapmap_kernel_objects target march entry)
   add_library(${target} OBJECT ${LEAPMAP_KERNEL_SOURCES})
   set_target_properties(${target} PROPERTIES LEAPMAP_LANES ON)
@@ -14,6 +19,11 @@ function(leapmap_kernel_objects target march entry)
     # What a loop over lanes calls is worth inlining up to hundreds of instructions: a call passes its lanes
     # by memory. Loops over a panel's nodes are worth unrolling.
     "$<$<CXX_COMPILER_ID:GNU>:SHELL:-funroll-loops --param max-inline-insns-auto=400>")
+  set(bits ${register_bits_of_${march}})
+  if(bits AND CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 12)
+    target_compile_options(${target} PRIVATE -mmove-max=${bits} -mstore-max=${bits}
+      -mmemcpy-strategy=libcall:-1:noalign)
+  endif()
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_include_directories(${target} SYSTEM PRIVATE
     $<TARGET_PROPERTY:GSL::gsl,INTERFACE_INCLUDE_DIRECTORIES>)

@@ -103,6 +103,7 @@ set(LEAPMAP_SOURCES
   src/engine/solve.cpp
   src/gaits/error_growth.cpp
   src/gaits/find_gaits.cpp
+  src/gaits/known_jumps.cpp
   src/gaits/return_map.cpp
   src/gaits/settle.cpp
   src/leapmap/outcome.cpp

@@ -62,8 +62,9 @@ auto SlidingPanels<S>::at_nodes(const Slide& slide, const ContactState<S>& from,
   for (std::size_t i = 0; i < nodes; i += width) {
     const T q = T(stretch.begin) + T(stretch.span) * Grid::shared(grid_.node, i);
     const T w = q * T(S(2) * stretch.curve * stretch.span), x = T(stretch.shift) + T(stretch.curve) * q * q;
-    const Trig<T> phi = nodes_at.phi[i / width] = trig(T(from.angle) + T(way) * x);
-    const SlidingCoefficients<T> at = nodes_at.sliding[i / width] = slide.coefficients(hoop, phi, T(way) * x);
+    const Trig<T> phi = trig(T(from.angle) + T(way) * x);
+    const SlidingCoefficients<T> at = slide.coefficients(hoop, phi, T(way) * x);
+    nodes_at.phi[i / width] = phi, nodes_at.sliding[i / width] = at;
     least = smaller(least, at.pivot);
     const T idle = free_normal_force(hoop, phi, T(S(0))), torque = hoop.drive / hoop.Ic;
     const T turned = T(way) * w, grows = T(S(2)) * at.turn * hoop.rho * phi.cos;

@@ -59,7 +59,8 @@ Landed moved(const Landed& at, const StateVector& by) {
 
 StateVector between(const Landed& a, const Landed& b) {
   StateVector difference = vector_of(b) - vector_of(a);
-  difference[0] = std::remainder(difference[0], 2.0 * std::numbers::pi);
+  if (std::abs(difference[0]) > std::numbers::pi)  // which is seldom, and the remainder takes long
+    difference[0] = std::remainder(difference[0], 2.0 * std::numbers::pi);
   return difference;
 }
 

@@ -52,8 +52,9 @@ void GaitSolver::follow(std::span<const Design> designs,
   Orbit orbit;
   map_.follow(Start::release, designs, states_, ends_, [&](std::size_t i) {
     throw_if_stopped();
-    const bool more = goes_on(designs[i], states_[i], courses_[i], orbit);
+    const bool more = goes_on(designs[i], states_[i], ends_[i].phase_sequence, courses_[i], orbit);
     if (courses_[i].settled) found(i, orbit);
+    if (!more) courses_[i].known = {};
     if (!more && courses_[i].jumps < scene_.settle) courses_[i].seen = {};
     return more;
   });
@@ -63,10 +64,26 @@ void GaitSolver::follow(std::span<const Design> designs,
       found(i, orbit);
 }
 
-/// Whether a design that has just landed is to be followed further. Where it has come so near to an orbit
-/// that it is not, it has settled.
-bool GaitSolver::goes_on(const Design& design, const Landed& landed, Course& course, Orbit& orbit) {
-  auto& [jumps, next_look, seen, settled] = course;
+/// Takes a landing, and those after it that known jumps lead to, to the last of which it moves the design.
+/// Returns whether the design is to be followed further.
+bool GaitSolver::goes_on(const Design& design, Landed& landed, std::uint64_t phases, Course& course,
+                         Orbit& orbit) {
+  constexpr long transient = 24;  // most settle soon afterwards
+  if (course.jumps >= transient) course.known.add(course.seen.back(), landed, phases);
+  bool more = takes(design, landed, course, orbit);
+  while (more) {
+    const std::optional<Landed> next = course.known.next(landed);
+    if (!next) break;
+    landed = *next;
+    more = takes(design, landed, course, orbit);
+  }
+  return more;
+}
+
+/// Takes the landing of one more jump. Returns whether the design is to be followed further: where it has
+/// come so near to an orbit that it is not, it has settled.
+bool GaitSolver::takes(const Design& design, const Landed& landed, Course& course, Orbit& orbit) {
+  auto& [jumps, next_look, seen, settled, known] = course;
   ++jumps;
   const auto most_seen = 3 * static_cast<std::size_t>(scene_.most_period) + 1;
   if (seen.size() == 2 * most_seen)
@@ -74,7 +91,7 @@ bool GaitSolver::goes_on(const Design& design, const Landed& landed, Course& cou
   seen.push_back(landed);
   if (jumps == next_look && jumps <= scene_.settle) {
     settled = is_settled(design, seen, orbit);
-    next_look += std::max(jumps / 4, 8L);
+    next_look += std::max(jumps / 4, 4L);
   }
   if (jumps == scene_.settle) seen.assign(1, landed);
   // In the end as many more as the longest period has.
@@ -84,11 +101,11 @@ bool GaitSolver::goes_on(const Design& design, const Landed& landed, Course& cou
 namespace {
 
 /// Whether an orbit is where one is that is drawn to it, and was a gap away from there a round before or
-/// later: what it has not yet come near by is a geometric series of gaps, and of how far each round of the
-/// solver that closed the orbit may end from one of the jumps.
-bool is_near(const Landed& at, double gap, const Orbit& orbit, double of_solvers) {
+/// later: what it has not yet come near by is a geometric series of gaps, and of how far off each round may
+/// be.
+bool is_near(const Landed& at, double gap, const Orbit& orbit, double off) {
   const double left = between(at, orbit.landings.back()).lpNorm<Eigen::Infinity>();
-  return left <= (10.0 * gap + of_solvers) / (1.0 - std::abs(orbit.multiplier)) + 1e-9;
+  return left <= (10.0 * gap + off) / (1.0 - std::abs(orbit.multiplier)) + 1e-9;
 }
 
 /// Where a sequence goes to whose differences shrink by one factor, by Aitken; the last comes first.
@@ -129,7 +146,7 @@ bool GaitSolver::is_settled(const Design& design, std::span<const Landed> seen, 
       return false;
     const double multiplier = std::abs(orbit.multiplier);
     return multiplier < contracts && (is_there || std::abs(multiplier - factor) < alike(multiplier)) &&
-           is_near(seen.back(), gaps[0], orbit, map_.nearness());
+           is_near(seen.back(), gaps[0], orbit, off());
   }
   return false;
 }
@@ -155,7 +172,7 @@ bool GaitSolver::find_orbit(const Design& design, std::span<const Landed> seen, 
     const double gap = between(seen[0], seen[period]).lpNorm<Eigen::Infinity>();
     if (!(gap < scene_.gait_tolerance) && !shrinks(seen, period)) continue;
     if (!map_.close(design, static_cast<int>(period), seen[0], orbit)) continue;
-    if (std::abs(orbit.multiplier) < 1.0 && is_near(seen[0], gap, orbit, map_.nearness())) return true;
+    if (std::abs(orbit.multiplier) < 1.0 && is_near(seen[0], gap, orbit, off())) return true;
   }
   return false;
 }

@@ -6,12 +6,14 @@
 #include <span>
 #include <vector>
 
+#include "gaits/known_jumps.hpp"
 #include "gaits/return_map.hpp"
 
 namespace leapmap {
 
 /// Lets designs jump until each round brings them nearer to an orbit by the same factor, and closes that
-/// orbit. At most Scene::settle + Scene::most_period jumps are followed. A thread's own workspace.
+/// orbit. At most Scene::settle + Scene::most_period jumps are followed; those that lie between others of the
+/// same design are not solved (known_jumps.hpp), and no orbit is told by them. A thread's own workspace.
 class GaitSolver {
  public:
   GaitSolver(const Scene& scene, JumpSolvers solvers) : scene_(scene), map_(scene, std::move(solvers)) {}
@@ -27,13 +29,18 @@ class GaitSolver {
  private:
   /// What is known of a design on its way.
   struct Course {
-    long jumps = 0, next_look = 24;
+    long jumps = 0, next_look = 12;
     std::vector<Landed> seen{};  ///< the last landings
     bool settled = false;
+    KnownJumps known{};
   };
   void follow(std::span<const Design> designs, const std::function<void(std::size_t, const Orbit&)>& found);
-  bool goes_on(const Design& design, const Landed& landed, Course& course, Orbit& orbit);
+  bool goes_on(const Design& design, Landed& landed, std::uint64_t phases, Course& course, Orbit& orbit);
+  bool takes(const Design& design, const Landed& landed, Course& course, Orbit& orbit);
   bool is_settled(const Design& design, std::span<const Landed> seen, Orbit& orbit);
+  /// How far off a round may be: it is solved with derivatives, or without, or begins beside the curve on
+  /// which landings lie, as some before it were known from others.
+  double off() const { return map_.nearness() + 100.0 * KnownJumps::error; }
   bool find_orbit(const Design& design, std::span<const Landed> seen, Orbit& orbit);
 
   Scene scene_;

@@ -196,10 +196,7 @@ struct Abreast<Dual<T, N>> {
 };
 template <class D, class S, std::size_t N>
 D abreast(const Dual<S, N>& dual) {
-  using T = std::decay_t<decltype(D::value)>;
-  D wide(abreast<T>(dual.value));
-  for (std::size_t k = 0; k < N; ++k) wide.by[k] = abreast<T>(dual.by[k]);
-  return wide;
+  return D(dual);
 }
 template <class T, std::size_t N>
 Dual<ScalarOf<T>, N> sum_of_lanes(const Dual<T, N>& duals) {

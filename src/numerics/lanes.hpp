@@ -56,11 +56,15 @@ struct Lanes<xsimd::batch<S, A>> {
   }
   static void store(const Word& word, std::uint64_t* to) { word.store_unaligned(to); }
   static xsimd::batch<S, A> moved_up(const S& first, const xsimd::batch<S, A>& value) {
-#ifdef __AVX512F__
     // Through memory the load would wait for both stores.
+#ifdef __AVX512F__
     if constexpr (count == 8)
       return {_mm512_castsi512_pd(_mm512_alignr_epi64(_mm512_castpd_si512(value.data),
                                                       _mm512_castpd_si512(_mm512_set1_pd(first)), 7))};
+#endif
+#ifdef __AVX2__
+    if constexpr (count == 4)
+      return {_mm256_blend_pd(_mm256_permute4x64_pd(value.data, 0b10'01'00'00), _mm256_set1_pd(first), 1)};
 #endif
     std::array<S, count + 1> lanes;
     lanes[0] = first;

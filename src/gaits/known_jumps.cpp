@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gaits/known_jumps.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <iterator>
+
+namespace leapmap {
+namespace {
+
+constexpr std::size_t fewest = 4, most = 12;  // neighbours
+
+/// Where a jump begins, and where it ends, each as seen from a landing of its own.
+using BeginAndEnd = Eigen::Matrix<double, 8, 1>;
+
+/// The polynomial through places that are added one after the other, at zero, by Newton's differences.
+class AtZero {
+ public:
+  void add(double place, BeginAndEnd difference) {
+    for (std::size_t k = 0; k < count_; ++k) {
+      std::swap(difference,
+                last_[k]);  // of the same order, without the first of the places but with this one
+      difference = (last_[k] - difference) / (place - places_[count_ - 1 - k]);
+    }
+    last_[count_] = difference;
+    places_[count_++] = place;
+    const BeginAndEnd correction = difference * product_;
+    product_ *= -place;
+    value_ += correction;
+    before_ = correction_, correction_ = correction.lpNorm<Eigen::Infinity>();
+  }
+  std::size_t count() const { return count_; }
+  const BeginAndEnd& value() const { return value_; }
+  /// Whether the last place changed it by less than `error`, and the one before by not much more.
+  bool converges(double error) const {
+    return count_ >= fewest && correction_ < error && before_ < 30.0 * error;
+  }
+
+ private:
+  std::array<double, most> places_;
+  std::array<BeginAndEnd, most> last_;  // differences of each order that end with the last place
+  BeginAndEnd value_ = BeginAndEnd::Zero();
+  double product_ = 1.0, correction_ = 0.0, before_ = 0.0;
+  std::size_t count_ = 0;
+};
+
+}  // namespace
+
+auto KnownJumps::at_or_after(double angle) const -> std::vector<Known>::const_iterator {
+  return std::lower_bound(known_.begin(), known_.end(), angle,
+                          [](const Known& jump, double there) { return jump.from.angle < there; });
+}
+
+void KnownJumps::add(const Landed& from, const Landed& to, std::uint64_t phases) {
+  constexpr double too_close = 1e-9;  // to tell more than the jump that is known there
+  const bool are_all_told = phases != 0 && phases >> 62 == 0;
+  if (!are_all_told) return;
+  const auto right = at_or_after(from.angle);
+  if (right != known_.end() && right->from.angle - from.angle < too_close) return;
+  if (right != known_.begin() && from.angle - std::prev(right)->from.angle < too_close) return;
+  known_.insert(right, {from, to, {phases, to.slip != 0.0, to.normal != 0.0}});
+}
+
+std::optional<Landed> KnownJumps::next(const Landed& from) const {
+  const auto right = at_or_after(from.angle);
+  if (right == known_.begin() || right == known_.end() || std::prev(right)->kind != right->kind) return {};
+  AtZero polynomial;
+  const auto add = [&](const Known& jump) {
+    BeginAndEnd seen;
+    seen << between(from, jump.from), between(right->to, jump.to);
+    polynomial.add(jump.from.angle - from.angle, seen);
+  };
+  // One on either side, then always the nearer one.
+  auto first = std::prev(right), last = std::next(right);
+  add(*first), add(*right);
+  while (!polynomial.converges(error)) {
+    const bool more_left = first != known_.begin() && std::prev(first)->kind == right->kind;
+    const bool more_right = last != known_.end() && last->kind == right->kind;
+    if (polynomial.count() == most || (!more_left && !more_right)) return {};
+    const bool is_left_nearer = more_left && (!more_right || from.angle - std::prev(first)->from.angle <
+                                                                 last->from.angle - from.angle);
+    add(is_left_nearer ? *--first : *last++);
+  }
+  const bool is_on_curve = polynomial.value().head<4>().lpNorm<Eigen::Infinity>() < 10.0 * error;
+  if (!is_on_curve) return {};
+  return reduced(moved(right->to, polynomial.value().tail<4>()));
+}
+
+}  // namespace leapmap

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Jumps that are known from others, on a return map that is known: r x (1 - x), with a spin that follows.
+#include "gaits/known_jumps.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace leapmap {
+namespace {
+
+Landed landed_at(double x) { return {.angle = x, .spin = std::sin(3.0 * x)}; }
+Landed next_of(const Landed& at) { return landed_at(3.9 * at.angle * (1.0 - at.angle)); }
+
+/// So many jumps from somewhere in the chaos.
+KnownJumps chaos(int jumps, Landed& at) {
+  KnownJumps known;
+  for (int k = 0; k < jumps; ++k) {
+    const Landed from = at;
+    at = next_of(at);
+    known.add(from, at, 5);
+  }
+  return known;
+}
+
+TEST(KnownJumps, TellOfNearlyAllOthersWithinTheirError) {
+  Landed at = landed_at(0.3);
+  const KnownJumps known = chaos(150, at);
+  int told = 0;
+  for (int k = 0; k < 1'000; ++k) {
+    const Landed to = next_of(at);
+    if (const auto next = known.next(at)) {
+      ++told;
+      EXPECT_LT(between(*next, to).lpNorm<Eigen::Infinity>(), 5.0 * KnownJumps::error);
+    }
+    at = to;
+  }
+  EXPECT_GT(told, 950);
+}
+
+TEST(KnownJumps, TellNothingWithoutNeighbours) {
+  Landed at = landed_at(0.3);
+  EXPECT_FALSE(KnownJumps().next(at));
+  EXPECT_FALSE(chaos(5, at).next(landed_at(0.5)));  // six make the polynomials
+  const KnownJumps known = chaos(150, at);
+  EXPECT_FALSE(known.next(landed_at(0.999)));  // chaos goes from 0.095 to 0.975
+  EXPECT_FALSE(known.next(landed_at(0.05)));
+}
+
+TEST(KnownJumps, TellNothingOfLandingsBesideTheirCurve) {
+  Landed at = landed_at(0.3);
+  const KnownJumps known = chaos(150, at);
+  Landed beside = landed_at(0.6);
+  ASSERT_TRUE(known.next(beside));
+  beside.spin += 1e-6;
+  EXPECT_FALSE(known.next(beside));
+  beside = landed_at(0.6);
+  beside.slip = 1e-6;
+  EXPECT_FALSE(known.next(beside));
+}
+
+TEST(KnownJumps, TellNothingBetweenJumpsOfOtherPhases) {
+  KnownJumps known;
+  for (int k = 0; k < 100; ++k) {
+    const Landed from = landed_at(0.01 * k);
+    known.add(from, next_of(from), k < 50 ? 5 : 6);
+  }
+  EXPECT_TRUE(known.next(landed_at(0.485)));
+  EXPECT_FALSE(known.next(landed_at(0.495)));
+  EXPECT_TRUE(known.next(landed_at(0.505)));
+}
+
+TEST(KnownJumps, TellNothingOfJumpsWhosePhasesAreNotAllTold) {
+  for (const std::uint64_t phases : {std::uint64_t{0}, std::uint64_t{3} << 62, std::uint64_t{1} << 62}) {
+    KnownJumps known;
+    for (int k = 0; k < 100; ++k) {
+      const Landed from = landed_at(0.01 * k);
+      known.add(from, next_of(from), phases);
+    }
+    EXPECT_FALSE(known.next(landed_at(0.485)));
+  }
+}
+
+TEST(KnownJumps, TellNothingAcrossAStepOrAKink) {
+  KnownJumps step, kink;
+  for (int k = 0; k < 100; ++k) {
+    const Landed from = landed_at(0.01 * k);
+    step.add(from, landed_at(from.angle < 0.5 ? 0.3 : 0.3001), 5);
+    kink.add(from, landed_at(std::abs(from.angle - 0.5)), 5);
+  }
+  for (const double x : {0.485, 0.495, 0.505}) {
+    EXPECT_FALSE(step.next(landed_at(x))) << x;
+    EXPECT_FALSE(kink.next(landed_at(x))) << x;
+  }
+  EXPECT_TRUE(step.next(landed_at(0.405)));
+  EXPECT_TRUE(kink.next(landed_at(0.405)));
+}
+
+}  // namespace
+}  // namespace leapmap
