@@ -22,6 +22,7 @@ plt.rcParams.update({
     "savefig.dpi": 120, "hatch.linewidth": 0.4, "hatch.color": EDGE,
     "svg.hashsalt": "leapmap",
     "svg.fonttype": "none", "pdf.fonttype": 42,
+    "figure.autolayout": False, "figure.constrained_layout.use": False,  # save() asks for none
 })
 
 
@@ -120,7 +121,7 @@ def save(figure, output):
     for ending, metadata in FORMATS.items():
         drawn = io.BytesIO()
         figure.savefig(drawn, format=ending, metadata=metadata)
-        figure.set_layout_engine("none")  # laid out once: that takes as long as to draw
+        figure.set_layout_engine(None)  # it is laid out once; any engine, even "none", draws it once more
         replace_file(f"{output}.{ending}", drawn.getvalue())
         print(f"{output}.{ending}")
     plt.close(figure)

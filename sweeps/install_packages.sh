@@ -5,25 +5,32 @@
 #   install_packages.sh tests   for the tests as well
 #   install_packages.sh docs    for the site
 #   install_packages.sh all     for both tiers of tests and the benchmarks
+# Several in one call take less time than one by one.
 set -eu
-case "${1:-main}" in
-  main | tests | docs | all) ;;
-  *) echo "install_packages.sh: '$1' is unknown; allowed: main, tests, docs, all" >&2; exit 2 ;;
-esac
+for kind in "$@"; do
+  case "$kind" in
+    main | tests | docs | all) ;;
+    *) echo "install_packages.sh: '$kind' is unknown; allowed: main, tests, docs, all" >&2; exit 2 ;;
+  esac
+done
+kinds=" $* "
+is_for() {  # kind
+  case "$kinds" in *" $1 "* | *" all "*) ;; *) return 1 ;; esac
+}
 packages="g++ cmake ninja-build git file dpkg-dev libgsl-dev libhdf5-dev libfmt-dev libtomlplusplus-dev
   libcli11-dev libxsimd-dev nlohmann-json3-dev libdeflate-dev zlib1g-dev libudunits2-dev libeigen3-dev
   libpugixml-dev libzip-dev libnlopt-cxx-dev libboost-dev libflint-arb-dev emscripten esbuild
   node-d3-brush node-d3-drag node-d3-scale node-d3-selection pybind11-dev python3-dev python3 python3-numpy python3-h5py
   python3-matplotlib python3-xarray"
-if [ "${1:-main}" = docs ] || [ "${1:-main}" = all ]; then
+if is_for docs; then
   packages="$packages doxygen python3-sphinx python3-myst-parser python3-breathe furo codespell"
 fi
-if [ "${1:-main}" = tests ] || [ "${1:-main}" = all ]; then
+if is_for tests; then
   packages="$packages libgtest-dev clang-format clang-tidy hdf5-tools netcdf-bin python3-scipy
     python3-openturns python3-pytest python3-netcdf4 python3-h5netcdf python3-selenium
     chromium chromium-driver node-typescript poppler-utils parallel"
 fi
-if [ "${1:-main}" = all ]; then
+if is_for all; then
   packages="$packages libbenchmark-dev clang libclang-rt-14-dev libomp-dev qemu-user slurm-wlm munge
     firefox-esr"
 fi

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
+#include <cmath>
 #include <iterator>
+#include <utility>
 
 namespace leapmap {
 namespace {
@@ -53,16 +54,20 @@ auto KnownJumps::at_or_after(double angle) const -> std::vector<Known>::const_it
 }
 
 void KnownJumps::add(const Landed& from, const Landed& to, std::uint64_t phases) {
+  constexpr std::size_t most_known = 256, on_trial = 128;
   constexpr double too_close = 1e-9;  // to tell more than the jump that is known there
   const bool are_all_told = phases != 0 && phases >> 62 == 0;
-  if (!are_all_told) return;
+  const bool gives_up = known_.size() >= on_trial && told_ < on_trial / 8;
+  if (!are_all_told || gives_up || known_.size() == most_known) return;
   const auto right = at_or_after(from.angle);
-  if (right != known_.end() && right->from.angle - from.angle < too_close) return;
-  if (right != known_.begin() && from.angle - std::prev(right)->from.angle < too_close) return;
-  known_.insert(right, {from, to, {phases, to.slip != 0.0, to.normal != 0.0}});
+  const bool is_apart = (right == known_.end() || right->from.angle - from.angle >= too_close) &&
+                        (right == known_.begin() || from.angle - std::prev(right)->from.angle >= too_close);
+  if (!is_apart || !std::isfinite(from.angle)) return;
+  const auto way = [](double slip) { return (slip > 0.0) - (slip < 0.0); };
+  known_.insert(right, {from, to, {phases, way(from.slip), way(to.slip), to.normal != 0.0}});
 }
 
-std::optional<Landed> KnownJumps::next(const Landed& from) const {
+std::optional<Landed> KnownJumps::next(const Landed& from) {
   const auto right = at_or_after(from.angle);
   if (right == known_.begin() || right == known_.end() || std::prev(right)->kind != right->kind) return {};
   AtZero polynomial;
@@ -83,7 +88,8 @@ std::optional<Landed> KnownJumps::next(const Landed& from) const {
     add(is_left_nearer ? *--first : *last++);
   }
   const bool is_on_curve = polynomial.value().head<4>().lpNorm<Eigen::Infinity>() < 10.0 * error;
-  if (!is_on_curve) return {};
+  if (!is_on_curve || !polynomial.value().allFinite()) return {};
+  ++told_;
   return reduced(moved(right->to, polynomial.value().tail<4>()));
 }
 

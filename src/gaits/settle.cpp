@@ -51,7 +51,6 @@ void GaitSolver::follow(std::span<const Design> designs,
   for (const Design& design : designs) states_.push_back(released<double>(design));
   Orbit orbit;
   map_.follow(Start::release, designs, states_, ends_, [&](std::size_t i) {
-    throw_if_stopped();
     const bool more = goes_on(designs[i], states_[i], ends_[i].phase_sequence, courses_[i], orbit);
     if (courses_[i].settled) found(i, orbit);
     if (!more) courses_[i].known = {};
@@ -60,8 +59,9 @@ void GaitSolver::follow(std::span<const Design> designs,
   });
   for (std::size_t i = 0; i < designs.size(); ++i)
     if (ends_[i].status == Status::jumped && !courses_[i].settled &&
-        find_orbit(designs[i], courses_[i].seen, orbit))
+        find_orbit(designs[i], courses_[i], orbit))
       found(i, orbit);
+  courses_.clear();
 }
 
 /// Takes a landing, and those after it that known jumps lead to, to the last of which it moves the design.
@@ -74,7 +74,7 @@ bool GaitSolver::goes_on(const Design& design, Landed& landed, std::uint64_t pha
   while (more) {
     const std::optional<Landed> next = course.known.next(landed);
     if (!next) break;
-    landed = *next;
+    landed = *next, course.interpolates = true;
     more = takes(design, landed, course, orbit);
   }
   return more;
@@ -83,14 +83,15 @@ bool GaitSolver::goes_on(const Design& design, Landed& landed, std::uint64_t pha
 /// Takes the landing of one more jump. Returns whether the design is to be followed further: where it has
 /// come so near to an orbit that it is not, it has settled.
 bool GaitSolver::takes(const Design& design, const Landed& landed, Course& course, Orbit& orbit) {
-  auto& [jumps, next_look, seen, settled, known] = course;
+  auto& [jumps, next_look, seen, settled, known, interpolates] = course;
+  throw_if_stopped();
   ++jumps;
   const auto most_seen = 3 * static_cast<std::size_t>(scene_.most_period) + 1;
   if (seen.size() == 2 * most_seen)
     seen.erase(seen.begin(), seen.begin() + static_cast<std::ptrdiff_t>(most_seen));
   seen.push_back(landed);
   if (jumps == next_look && jumps <= scene_.settle) {
-    settled = is_settled(design, seen, orbit);
+    settled = is_settled(design, course, orbit);
     next_look += std::max(jumps / 4, 4L);
   }
   if (jumps == scene_.settle) seen.assign(1, landed);
@@ -119,7 +120,8 @@ double limit_of(const std::array<double, 3>& sequence) {
 }  // namespace
 
 /// Whether the last rounds come nearer to an orbit by one factor, which is its multiplier.
-bool GaitSolver::is_settled(const Design& design, std::span<const Landed> seen, Orbit& orbit) {
+bool GaitSolver::is_settled(const Design& design, const Course& course, Orbit& orbit) {
+  const std::vector<Landed>& seen = course.seen;
   constexpr double near = 1e-3, nearing = 0.1, rounding = 1e-11, contracts = 0.99;
   // How far factors may differ: the nearer to 1 the less, as an orbit that repels may be close by.
   const auto alike = [](double factor) { return std::min(0.05, 0.5 * (1.0 - factor)); };
@@ -146,7 +148,7 @@ bool GaitSolver::is_settled(const Design& design, std::span<const Landed> seen, 
       return false;
     const double multiplier = std::abs(orbit.multiplier);
     return multiplier < contracts && (is_there || std::abs(multiplier - factor) < alike(multiplier)) &&
-           is_near(seen.back(), gaps[0], orbit, off());
+           is_near(seen.back(), gaps[0], orbit, off(course));
   }
   return false;
 }
@@ -166,13 +168,18 @@ bool shrinks(std::span<const Landed> seen, std::size_t period) {
 
 }  // namespace
 
-/// The orbit that it is drawn to: of the shortest period after which it is nearly where it was.
-bool GaitSolver::find_orbit(const Design& design, std::span<const Landed> seen, Orbit& orbit) {
+/// The orbit that it is drawn to: of the shortest period after which it is nearly where it was. At coarse
+/// tolerances an orbit may close from some of its landings alone.
+bool GaitSolver::find_orbit(const Design& design, const Course& course, Orbit& orbit) {
+  const std::vector<Landed>& seen = course.seen;
   for (std::size_t period = 1; period < seen.size(); ++period) {
     const double gap = between(seen[0], seen[period]).lpNorm<Eigen::Infinity>();
     if (!(gap < scene_.gait_tolerance) && !shrinks(seen, period)) continue;
-    if (!map_.close(design, static_cast<int>(period), seen[0], orbit)) continue;
-    if (std::abs(orbit.multiplier) < 1.0 && is_near(seen[0], gap, orbit, off())) return true;
+    for (std::size_t k = 0; k < period; ++k) {
+      if (!map_.close(design, static_cast<int>(period), seen[k], orbit)) continue;
+      if (std::abs(orbit.multiplier) < 1.0 && is_near(seen[k], gap, orbit, off(course))) return true;
+      break;
+    }
   }
   return false;
 }

@@ -33,15 +33,18 @@ class GaitSolver {
     std::vector<Landed> seen{};  ///< the last landings
     bool settled = false;
     KnownJumps known{};
+    bool interpolates = false;  ///< a jump was known from others
   };
   void follow(std::span<const Design> designs, const std::function<void(std::size_t, const Orbit&)>& found);
   bool goes_on(const Design& design, Landed& landed, std::uint64_t phases, Course& course, Orbit& orbit);
   bool takes(const Design& design, const Landed& landed, Course& course, Orbit& orbit);
-  bool is_settled(const Design& design, std::span<const Landed> seen, Orbit& orbit);
-  /// How far off a round may be: it is solved with derivatives, or without, or begins beside the curve on
-  /// which landings lie, as some before it were known from others.
-  double off() const { return map_.nearness() + 100.0 * KnownJumps::error; }
-  bool find_orbit(const Design& design, std::span<const Landed> seen, Orbit& orbit);
+  bool is_settled(const Design& design, const Course& course, Orbit& orbit);
+  /// How far off a round may be, as it is solved with derivatives or without. Jumps that are known from
+  /// others lead beside the curve on which landings lie.
+  double off(const Course& course) const {
+    return map_.nearness() + (course.interpolates ? 100.0 * KnownJumps::error : 0.0);
+  }
+  bool find_orbit(const Design& design, const Course& course, Orbit& orbit);
 
   Scene scene_;
   ReturnMap map_;

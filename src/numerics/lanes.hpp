@@ -58,12 +58,12 @@ struct Lanes<xsimd::batch<S, A>> {
   static xsimd::batch<S, A> moved_up(const S& first, const xsimd::batch<S, A>& value) {
     // Through memory the load would wait for both stores.
 #ifdef __AVX512F__
-    if constexpr (count == 8)
+    if constexpr (count == 8 && sizeof(S) == 8)
       return {_mm512_castsi512_pd(_mm512_alignr_epi64(_mm512_castpd_si512(value.data),
                                                       _mm512_castpd_si512(_mm512_set1_pd(first)), 7))};
 #endif
 #ifdef __AVX2__
-    if constexpr (count == 4)
+    if constexpr (count == 4 && sizeof(S) == 8)
       return {_mm256_blend_pd(_mm256_permute4x64_pd(value.data, 0b10'01'00'00), _mm256_set1_pd(first), 1)};
 #endif
     std::array<S, count + 1> lanes;

@@ -37,20 +37,37 @@ void transpose(std::array<xsimd::batch<double, A>, 8>& m) {
   }
 }
 #endif
+#ifdef __AVX2__
+/// Four registers of four.
+template <class A>
+void transpose(std::array<xsimd::batch<double, A>, 4>& m) {
+  const __m256d even_low = _mm256_unpacklo_pd(m[0], m[1]), odd_low = _mm256_unpackhi_pd(m[0], m[1]),
+                even_high = _mm256_unpacklo_pd(m[2], m[3]), odd_high = _mm256_unpackhi_pd(m[2], m[3]);
+  m[0] = _mm256_permute2f128_pd(even_low, even_high, 0x20);
+  m[1] = _mm256_permute2f128_pd(odd_low, odd_high, 0x20);
+  m[2] = _mm256_permute2f128_pd(even_low, even_high, 0x31);
+  m[3] = _mm256_permute2f128_pd(odd_low, odd_high, 0x31);
+}
+#endif
 
 /// row_of(i) points to eight numbers for lane i of T. Column k has number k of every lane.
 template <class T, class RowOf>
 std::array<T, 8> columns_of(const RowOf& row_of) {
   std::array<T, 8> columns;
-#ifdef __AVX512F__
+#ifdef __AVX2__
+  constexpr std::size_t width = Lanes<Batch>::count;
   if constexpr (std::is_same_v<T, Batch>) {
-    for (std::size_t i = 0; i < 8; ++i) columns[i] = Batch::load_unaligned(row_of(i));
-    transpose(columns);
+    std::array<Batch, width> part;
+    for (std::size_t first = 0; first < 8; first += width) {
+      for (std::size_t i = 0; i < width; ++i) part[i] = Batch::load_unaligned(row_of(i) + first);
+      transpose(part);
+      for (std::size_t k = 0; k < width; ++k) columns[first + k] = part[k];
+    }
     return columns;
   }
   if constexpr (std::is_same_v<T, Wide<Batch>>) {
     const auto low = columns_of<Batch>(row_of),
-               high = columns_of<Batch>([&](std::size_t i) { return row_of(i + 8); });
+               high = columns_of<Batch>([&](std::size_t i) { return row_of(i + width); });
     for (std::size_t k = 0; k < 8; ++k) columns[k] = {low[k], high[k]};
     return columns;
   }
@@ -69,17 +86,22 @@ std::array<T, 8> load_rows(const Row<ScalarOf<T>>* rows, const std::uint32_t* in
 template <class T, std::size_t stride = 1>
 void store_rows(std::array<T, 8> columns, Row<ScalarOf<T>>* rows, const std::uint32_t* index,
                 std::size_t count) {
-#ifdef __AVX512F__
+#ifdef __AVX2__
+  constexpr std::size_t width = Lanes<Batch>::count;
   if constexpr (std::is_same_v<T, Batch>) {
-    transpose(columns);
-    for (std::size_t i = 0; i < count; ++i) columns[i].store_unaligned(rows[stride * index[i]].data());
+    std::array<Batch, width> part;
+    for (std::size_t first = 0; first < 8; first += width) {
+      for (std::size_t k = 0; k < width; ++k) part[k] = columns[first + k];
+      transpose(part);
+      for (std::size_t i = 0; i < count; ++i) part[i].store_unaligned(rows[stride * index[i]].data() + first);
+    }
     return;
   }
   if constexpr (std::is_same_v<T, Wide<Batch>>) {
     std::array<Batch, 8> low, high;
     for (std::size_t k = 0; k < 8; ++k) low[k] = columns[k].low, high[k] = columns[k].high;
-    store_rows<Batch, stride>(low, rows, index, std::min<std::size_t>(count, 8));
-    if (count > 8) store_rows<Batch, stride>(high, rows, index + 8, count - 8);
+    store_rows<Batch, stride>(low, rows, index, std::min(count, width));
+    if (count > width) store_rows<Batch, stride>(high, rows, index + width, count - width);
     return;
   }
 #endif

@@ -26,8 +26,8 @@ if(LEAPMAP_EMCC AND BOOST_INCLUDE_DIR)
     tolerance/scatter_solver)
   # Of one hoop at a time: made small, as it is much of the page.
   set(derivatives
-    friction/gradient gaits/error_growth gaits/known_jumps gaits/return_map noslip/dual_jump noslip/dual_time noslip/gradient
-    noslip/halved_time trajectory/clearance)
+    friction/gradient gaits/error_growth gaits/known_jumps gaits/return_map noslip/dual_jump noslip/dual_time
+    noslip/gradient noslip/halved_time trajectory/clearance)
   # All in four units, as most of the time goes into reading headers.
   foreach(part ${parts})
     list(FIND parts ${part} number)

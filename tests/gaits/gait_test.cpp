@@ -13,6 +13,7 @@
 
 #include "friction/coulomb.hpp"
 #include "gaits/return_map.hpp"
+#include "gaits/settle.hpp"
 #include "leapmap/gait.hpp"
 #include "leapmap/solve.hpp"
 #include "noslip/exact.hpp"
@@ -359,6 +360,21 @@ TEST(Gaits, AreFoundThoughTheyAreCloseToLosingTheirStability) {
       solve({.slope = 0.19198621771937624, .mass_ratio = 3.0, .offset_ratio = 0.5}, scene);
   EXPECT_EQ(outcome.gait_period, 1);
   EXPECT_NEAR(outcome.gait_multiplier, -0.996815, 1e-6);
+}
+
+TEST(Gaits, AtCoarseTolerancesDoNotDependOnWhereFollowingEnds) {
+  // From some of its landings this orbit does not close to a tolerance of 1e-4.
+  const Design design{.slope = 6.336363636363636 * std::numbers::pi / 180.0,
+                      .mass_ratio = 2.091871690071861,
+                      .offset_ratio = 0.822,
+                      .mu_static = 0.5833333333333333,
+                      .restitution = 0.37};
+  Scene scene{.friction = Friction::coulomb, .runway = 20.0};
+  for (scene.settle = 200; scene.settle < 212; ++scene.settle) {
+    Orbit orbit;
+    ASSERT_TRUE(GaitSolver(scene, 1e-4).orbit_of(design, orbit)) << scene.settle;
+    EXPECT_EQ(orbit.jumps.size(), 12u) << scene.settle;
+  }
 }
 
 TEST(Gaits, OfHoopsThatNobodyCanFollowAreNotSaidToEnd) {

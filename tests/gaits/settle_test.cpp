@@ -141,10 +141,10 @@ TEST(Settling, SeesNoLongerPeriodThanIsAskedFor) {
 }
 
 TEST(Settling, GoesNoFurtherThanIsAskedFor) {
-  for (const long settle : {1L, 5L, 23L, 24L, 25L, 32L, 33L}) {
+  for (const long settle : {1L, 5L, 11L, 12L, 13L, 16L, 23L, 24L, 25L, 32L, 33L}) {
     const auto& [outcome, jumps] = follow(2.2, 0.3, {.settle = settle});
     EXPECT_EQ(outcome.gait_period, settle > 1 ? 1 : Outcome::no_gait) << settle;
-    EXPECT_LE(jumps, settle < 24 ? settle + 16 : 24) << settle;
+    EXPECT_LE(jumps, settle < 12 ? settle + 16 : 12) << settle;
     EXPECT_LE(follow(3.99, 0.3, {.settle = settle}).jumps, settle + 16) << settle;
   }
 }
