@@ -5,8 +5,8 @@
 # (COMDAT): otherwise the linker would keep any one copy of an inline function, perhaps one for a newer
 # machine, or a slower one with other roundings.
 
-# How wide the registers are. GCC copies structures in narrower parts, and a load of a whole register that follows
-# waits until these have reached memory. Longer copies are calls: "rep movsq" is slow to begin.
+# How wide the registers are. GCC copies structures in narrower parts, and a load of a whole register that
+# follows waits until these have reached memory. Longer copies are calls: "rep movsq" is slow to begin.
 set(register_bits_of_x86-64-v3 256)
 set(register_bits_of_x86-64-v4 512)
 
