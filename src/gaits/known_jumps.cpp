@@ -20,8 +20,8 @@ class AtZero {
  public:
   void add(double place, BeginAndEnd difference) {
     for (std::size_t k = 0; k < count_; ++k) {
-      std::swap(difference,
-                last_[k]);  // of the same order, without the first of the places but with this one
+      // The next order, from the differences of this one with the new place and without.
+      std::swap(difference, last_[k]);
       difference = (last_[k] - difference) / (place - places_[count_ - 1 - k]);
     }
     last_[count_] = difference;

@@ -12,8 +12,9 @@
 namespace leapmap {
 
 /// Lets designs jump until each round brings them nearer to an orbit by the same factor, and closes that
-/// orbit. At most Scene::settle + Scene::most_period jumps are followed; those that lie between others of the
-/// same design are not solved (known_jumps.hpp), and no orbit is told by them. A thread's own workspace.
+/// orbit. At most Scene::settle + Scene::most_period jumps are followed. Those between others of the same
+/// design are interpolated (known_jumps.hpp), but orbits are closed by jumps that are solved. A thread's own
+/// workspace.
 class GaitSolver {
  public:
   GaitSolver(const Scene& scene, JumpSolvers solvers) : scene_(scene), map_(scene, std::move(solvers)) {}
