@@ -55,10 +55,10 @@ auto KnownJumps::at_or_after(double angle) const -> std::vector<Known>::const_it
 
 void KnownJumps::add(const Landed& from, const Landed& to, std::uint64_t phases) {
   constexpr std::size_t most_known = 256, on_trial = 128;
-  constexpr double too_close = 1e-9;  // to tell more than the jump that is known there
-  const bool are_all_told = phases != 0 && phases >> 62 == 0;
-  const bool gives_up = known_.size() >= on_trial && told_ < on_trial / 8;
-  if (!are_all_told || gives_up || known_.size() == most_known) return;
+  constexpr double too_close = 1e-9;  // to a known jump to be of use
+  const bool holds_all_phases = phases != 0 && phases >> 62 == 0;
+  const bool gives_up = known_.size() >= on_trial && interpolated_ < on_trial / 8;
+  if (!holds_all_phases || gives_up || known_.size() == most_known) return;
   const auto right = at_or_after(from.angle);
   const bool is_apart = (right == known_.end() || right->from.angle - from.angle >= too_close) &&
                         (right == known_.begin() || from.angle - std::prev(right)->from.angle >= too_close);
@@ -89,7 +89,7 @@ std::optional<Landed> KnownJumps::next(const Landed& from) {
   }
   const bool is_on_curve = polynomial.value().head<4>().lpNorm<Eigen::Infinity>() < 10.0 * error;
   if (!is_on_curve || !polynomial.value().allFinite()) return {};
-  ++told_;
+  ++interpolated_;
   return reduced(moved(right->to, polynomial.value().tail<4>()));
 }
 

@@ -16,17 +16,17 @@ namespace leapmap {
 /// never settles some two thirds are known from others.
 class KnownJumps {
  public:
-  /// phases: of the jump from one landing to the next, both reduced, as in Outcome::phase_sequence. Where it
-  /// does not hold them all, or a model tells none, two jumps may differ though their phases agree: they are
-  /// left out. So are those after the first some hundreds.
+  /// phases: Outcome::phase_sequence of the jump between these two reduced landings. A jump is left out if
+  /// that holds no phases or not all of them, because two such jumps may differ though their phases agree. No
+  /// more than 256 jumps are kept.
   void add(const Landed& from, const Landed& to, std::uint64_t phases);
 
-  /// Where the jump ends that begins there. Nothing where its neighbours do not tell it to some `error`: they
-  /// went through other phases, do not lie on one curve with it, or too far from it.
+  /// Where the jump ends that begins there. Nothing if interpolation is not good to some `error`: its
+  /// neighbours went through other phases, lie on another curve, or are too far away.
   std::optional<Landed> next(const Landed& from);
 
-  /// By how much the farthest of the neighbours may change what the nearer ones tell: mostly more than it is
-  /// off by.
+  /// The largest change that the last neighbour may make to the interpolated landing. The landing itself is
+  /// mostly nearer to the solved one than that.
   static constexpr double error = 1e-9;
 
  private:
@@ -43,8 +43,8 @@ class KnownJumps {
   };
   std::vector<Known>::const_iterator at_or_after(double angle) const;
 
-  std::vector<Known> known_;  // by the angle at which they begin
-  std::size_t told_ = 0;
+  std::vector<Known> known_;      // by the angle at which they begin
+  std::size_t interpolated_ = 0;  // jumps so far
 };
 
 }  // namespace leapmap

@@ -23,19 +23,19 @@ KnownJumps chaos(int jumps, Landed& at) {
   return known;
 }
 
-TEST(KnownJumps, TellOfNearlyAllOthersWithinTheirError) {
+TEST(KnownJumps, InterpolateNearlyAllOthersWithinTheirError) {
   Landed at = landed_at(0.3);
   KnownJumps known = chaos(150, at);
-  int told = 0;
+  int interpolated = 0;
   for (int k = 0; k < 1'000; ++k) {
     const Landed to = next_of(at);
     if (const auto next = known.next(at)) {
-      ++told;
+      ++interpolated;
       EXPECT_LT(between(*next, to).lpNorm<Eigen::Infinity>(), 5.0 * KnownJumps::error);
     }
     at = to;
   }
-  EXPECT_GT(told, 950);
+  EXPECT_GT(interpolated, 950);
 }
 
 TEST(KnownJumps, TellNothingWithoutNeighbours) {
@@ -85,14 +85,14 @@ TEST(KnownJumps, GiveUpWhereLandingsLieOnNoCurve) {
   // Henon's map, by angle and spin: what comes next depends on both.
   KnownJumps known;
   Landed at{.angle = 0.1, .spin = 0.1};
-  int told = 0;
+  int interpolated = 0;
   for (int k = 0; k < 100'000; ++k) {
     const Landed to{.angle = 1.0 - 1.4 * at.angle * at.angle + at.spin, .spin = 0.3 * at.angle};
-    told += known.next(at).has_value();
+    interpolated += known.next(at).has_value();
     known.add(at, to, 5);
     at = to;
   }
-  EXPECT_LT(told, 100);
+  EXPECT_LT(interpolated, 100);
 }
 
 TEST(KnownJumps, TellOfLandingsThatSlipOrReboundAsTheirNeighboursDo) {
