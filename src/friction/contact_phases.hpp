@@ -127,9 +127,9 @@ class Rocking {
   static constexpr std::array cycles{12, 8, 10, 14, 16};  // each of its divisors, too
   static constexpr int many = 256, remembered = 33;       // two of the longest, and the phase that begins
   struct Begun {
-    Phase phase{};
-    int direction = 0;
-    double travel = 0.0, angle = 0.0, spin = 0.0;
+    Phase phase;
+    int direction;
+    double travel, angle, spin;
   };
 
   const Begun& ago(int phases) const {
@@ -152,7 +152,7 @@ class Rocking {
            std::abs(now.angle - before.angle) < nothing;
   }
 
-  std::array<Begun, remembered> begun_{};
+  std::array<Begun, remembered> begun_;  // those before count_; the others are never read
   std::array<int, cycles.size()> shrinking_{};
   int count_ = 0;
 };

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cmath>
-#include <optional>
 
 #include "friction/coulomb.hpp"
 #include "hoop/flight_search.hpp"
@@ -20,32 +19,31 @@
 
 namespace leapmap {
 
-/// What a contact with v = 0 or v != 0 goes on as.
-enum class ContactPhase { rolls, slides_forwards, slides_backwards, leaves };
+/// What a design goes on as; ends: it does not.
+enum class NextPhase { rolls, slides_forwards, slides_backwards, leaves, ends };
 
-/// At v != 0 it slides; at v = 0 the forces of rolling decide.
+/// The way that it slides, 1 or -1; 0: it does not.
+inline int direction_of(NextPhase next) {
+  return next == NextPhase::slides_forwards ? 1 : next == NextPhase::slides_backwards ? -1 : 0;
+}
+
+/// A contact at v != 0 slides; at v = 0 the forces of rolling decide.
 template <class S>
-ContactPhase contact_phase(const Hoop<S>& hoop, const Contact<S>& contact, const ContactState<S>& at,
-                           Leaving leaving) {
+NextPhase contact_phase(const Hoop<S>& hoop, const Contact<S>& contact, const ContactState<S>& at,
+                        Leaving leaving) {
   const Trig<S> phi = trig(at.angle);
   const bool would_leave =
       leaving != Leaving::never && free_normal_force(hoop, phi, at.spin * at.spin) <= S(0);
-  if (would_leave && (leaving == Leaving::always || at.slip != S(0))) return ContactPhase::leaves;
-  if (at.slip != S(0)) return at.slip > S(0) ? ContactPhase::slides_forwards : ContactPhase::slides_backwards;
+  if (would_leave && (leaving == Leaving::always || at.slip != S(0))) return NextPhase::leaves;
+  if (at.slip != S(0)) return at.slip > S(0) ? NextPhase::slides_forwards : NextPhase::slides_backwards;
   const auto guards =
       stick_guards(hoop, phi, S(at.spin * at.spin * contact_inertia(hoop, phi)), contact.mu_static);
   const S N = normal_force(hoop, phi, at.spin, angular_acceleration(hoop, phi, at.spin));
-  if (N > S(0) && guards.downhill.value >= S(0) && guards.uphill.value >= S(0)) return ContactPhase::rolls;
-  if (would_leave) return ContactPhase::leaves;
-  return guards.uphill.value > guards.downhill.value ? ContactPhase::slides_backwards  // F points downhill
-                                                     : ContactPhase::slides_forwards;
+  if (N > S(0) && guards.downhill.value >= S(0) && guards.uphill.value >= S(0)) return NextPhase::rolls;
+  if (would_leave) return NextPhase::leaves;
+  return guards.uphill.value > guards.downhill.value ? NextPhase::slides_backwards  // F points downhill
+                                                     : NextPhase::slides_forwards;
 }
-
-/// What comes next, and which way it slides (1, -1; 0: it does not).
-struct NextPhase {
-  Phase phase;
-  int direction;
-};
 
 /// The flight of a hoop that leaves the plane, or rebounds from it.
 template <class S>
@@ -54,7 +52,7 @@ Flight<S> flight_from(const Hoop<S>& hoop, const ContactState<S>& at) {
   return at.normal > S(0) ? fly_off(hoop, lift_off, at.normal) : fly(hoop, lift_off);
 }
 
-/// One design on its way through its phases. Nothing for a next phase: it has ended.
+/// One design on its way through its phases.
 template <class S>
 class PhaseMachine {
  public:
@@ -83,14 +81,14 @@ class PhaseMachine {
             std::abs(torque(hoop_, trig(at_.angle)) + hoop_.resistance) <= resistance_ * (S(1) + rounding);
   }
 
-  std::optional<NextPhase> begin(Start start) {
+  NextPhase begin(Start start) {
     if (start == Start::landing) return go_on(phase_after_landing(Leaving::always));
-    const ContactPhase next = contact_phase(hoop_, contact_, at_, Leaving::unless_it_sticks);
-    return next == ContactPhase::leaves ? ended_as(Status::airborne_at_release) : go_on(next);
+    const NextPhase next = contact_phase(hoop_, contact_, at_, Leaving::unless_it_sticks);
+    return next == NextPhase::leaves ? ended_as(Status::airborne_at_release) : go_on(next);
   }
 
   /// On from the end of the rolling or sliding that was told last, in which the hoop moved `to` there.
-  std::optional<NextPhase> after(PhaseEnd end, const ContactState<S>& to) {
+  NextPhase after(PhaseEnd end, const ContactState<S>& to) {
     using std::abs;
     driven_ += hoop_.motor() * (to.angle - at_.angle);
     if (slides_) slipped_ += abs((to.travel - at_.travel) - (to.angle - at_.angle));
@@ -100,13 +98,13 @@ class PhaseMachine {
       case PhaseEnd::slips_forwards:
       case PhaseEnd::slips_backwards:
         return go_on(free_normal_force(hoop_, trig(at_.angle), S(at_.spin * at_.spin)) <= S(0)
-                         ? ContactPhase::leaves
-                     : end == PhaseEnd::slips_forwards ? ContactPhase::slides_forwards
-                                                       : ContactPhase::slides_backwards);
+                         ? NextPhase::leaves
+                     : end == PhaseEnd::slips_forwards ? NextPhase::slides_forwards
+                                                       : NextPhase::slides_backwards);
       case PhaseEnd::slip_ends:
         return go_on(contact_phase(hoop_, contact_, at_, Leaving::unless_it_sticks));
       case PhaseEnd::lifts_off:
-        return go_on(ContactPhase::leaves);
+        return go_on(NextPhase::leaves);
       case PhaseEnd::stalls:
         if (hoop_.resistance == S(0) || held_ || is_held(hoop_, trig(at_.angle)))
           return ended_as(Status::stalled);
@@ -126,7 +124,7 @@ class PhaseMachine {
   }
 
   /// On from the flight that was told last: it lands, unless that was it.
-  std::optional<NextPhase> after(const Flight<S>& flight) {
+  NextPhase after(const Flight<S>& flight) {
     const LiftOff<S> lift_off{at_.time, at_.angle, at_.spin};
     if (sinks_without_motor()) return ended_as(Status::indeterminate);
     begin_phase(Phase::flight, 0);
@@ -161,27 +159,23 @@ class PhaseMachine {
   const ContactState<S>& at() const { return at_; }
 
  private:
-  ContactPhase phase_after_landing(Leaving leaving) const {
-    return at_.normal > S(0) ? ContactPhase::leaves : contact_phase(hoop_, contact_, at_, leaving);
+  NextPhase phase_after_landing(Leaving leaving) const {
+    return at_.normal > S(0) ? NextPhase::leaves : contact_phase(hoop_, contact_, at_, leaving);
   }
 
-  std::optional<NextPhase> go_on(ContactPhase next) {
+  NextPhase go_on(NextPhase next) {
     if (sequence_.count() >= most_phases)
       return ended_as(Status::failed, contact_.restitution > S(0) && contact_.rest_speed < S(1e-12)
                                           ? endless_rebounds
                                           : "more phases than a design may go through");
-    if (next == ContactPhase::leaves) return NextPhase{Phase::flight, 0};
+    if (next == NextPhase::leaves) return next;
     // At rest the resistance is as large as it has to be for a hoop that does not slide.
-    if (held_ && next != ContactPhase::rolls) return ended_as(Status::failed, reverses_against_resistance);
-    slides_ = next != ContactPhase::rolls;
-    const NextPhase phase{slides_ ? Phase::sliding : Phase::rolling, !slides_ ? 0
-                                                                     : next == ContactPhase::slides_forwards
-                                                                         ? 1
-                                                                         : -1};
-    if (!begin_phase(phase.phase, phase.direction)) return phase;
+    if (held_ && next != NextPhase::rolls) return ended_as(Status::failed, reverses_against_resistance);
+    slides_ = next != NextPhase::rolls;
+    if (!begin_phase(slides_ ? Phase::sliding : Phase::rolling, direction_of(next))) return next;
     ended_as(Status::stalled);
     outcome_.slip_distance = Outcome::none;  // it goes on slipping, a little less on every swing
-    return std::nullopt;
+    return NextPhase::ends;
   }
 
   /// Returns whether the hoop rocks to rest: the phase is then its last.
@@ -193,7 +187,7 @@ class PhaseMachine {
   }
 
   /// What is not known of a design that has no answer is not told.
-  std::nullopt_t ended_as(Status status, const char* reason = nullptr) {
+  NextPhase ended_as(Status status, const char* reason = nullptr) {
     if (observer_->end) observer_->end(in_double(at_));
     if (status == Status::failed || status == Status::indeterminate) {
       outcome_ = {};
@@ -204,7 +198,7 @@ class PhaseMachine {
     outcome_.status = status;
     outcome_.failure = reason;
     outcome_.phase_sequence = sequence_.code();
-    return std::nullopt;
+    return NextPhase::ends;
   }
 
   /// Whether it is the motor alone that lifts the hoop off, and idles in flight, so that the flight would
@@ -251,17 +245,17 @@ template <class S, class Roll, class Slide>
 Outcome go_through_phases(Start start, const Design& design, ContactState<S>& from, const Scene& scene,
                           const CoulombObserver& observer, const Roll& roll, const Slide& slide) {
   PhaseMachine<S> machine(design, from, scene, observer);
-  for (auto next = machine.begin(start); next;) {
+  for (NextPhase next = machine.begin(start); next != NextPhase::ends;) {
     throw_if_stopped();
-    if (next->phase == Phase::flight) {
+    if (next == NextPhase::leaves) {
       next = machine.after(flight_from(machine.hoop(), machine.at()));
       continue;
     }
     ContactState<S> at = machine.at();
     const PhaseEnd end =
-        next->phase == Phase::rolling
+        next == NextPhase::rolls
             ? roll(machine.hoop(), machine.contact(), at, machine.runway())
-            : slide(machine.hoop(), machine.contact(), at, machine.runway(), next->direction);
+            : slide(machine.hoop(), machine.contact(), at, machine.runway(), direction_of(next));
     next = machine.after(end, at);
   }
   if (machine.outcome().status == Status::jumped) from = machine.at();

@@ -20,14 +20,14 @@ void CoulombLanes<T>::solve(Start start, std::span<const Design> designs, std::s
                             const Scene& scene, std::span<Outcome> outcomes, const GoesOn& goes_on) {
   const CoulombObserver nobody;
   constexpr std::size_t width = Lanes<T>::count;
-  find_pivot_zeros(designs, scene);
+  look_at_pivots(designs, scene);
   // A call that ended by an exception leaves phases behind.
   free_.clear(), flying_.clear(), rebounding_.clear(), rolling_.clear(), sliding_.clear();
   for (std::size_t place = most_on_their_way; place-- > 0;)
     free_.push_back(static_cast<std::uint32_t>(place));
-  const auto take_up = [&](std::uint32_t place, std::optional<NextPhase> next) {
+  const auto take_up = [&](std::uint32_t place, NextPhase next) {
     auto& [design, machine] = on_their_way_[place];
-    while (!next) {
+    while (next == NextPhase::ends) {
       outcomes[design] = machine->outcome();
       const bool jumps = outcomes[design].status == Status::jumped;
       if (jumps) states[design] = machine->at();
@@ -36,7 +36,7 @@ void CoulombLanes<T>::solve(Start start, std::span<const Design> designs, std::s
       machine->put(states[design]);
       next = machine->begin(Start::landing);
     }
-    go_on(place, *next);
+    go_on(place, next);
   };
   for (std::size_t unbegun = 0; unbegun < designs.size() || free_.size() < most_on_their_way;) {
     throw_if_stopped();
@@ -68,9 +68,9 @@ void CoulombLanes<T>::solve(Start start, std::span<const Design> designs, std::s
 }
 
 template <class T>
-void CoulombLanes<T>::find_pivot_zeros(std::span<const Design> designs, const Scene& scene) {
+void CoulombLanes<T>::look_at_pivots(std::span<const Design> designs, const Scene& scene) {
   constexpr std::size_t width = Lanes<T>::count;
-  pivot_zeros_.resize(designs.size());
+  pivots_.resize(designs.size());
   for (std::size_t first = 0; first < designs.size(); first += width) {
     const std::size_t count = std::min(width, designs.size() - first);
     const auto design_of = [&](std::size_t i) -> const Design& {
@@ -78,26 +78,29 @@ void CoulombLanes<T>::find_pivot_zeros(std::span<const Design> designs, const Sc
     };
     const T mu_kinetic =
         gathered<T>([&](std::size_t i) { return contact_of<S>(design_of(i), scene).mu_kinetic; });
-    const PivotZeros<T> zeros = pivot_zeros(gathered_designs<T>(design_of).hoop, mu_kinetic);
+    const Hoop<T> hoop = gathered_designs<T>(design_of).hoop;
+    const PivotZeros<T> zeros = pivot_zeros(hoop, mu_kinetic);
+    const auto least = lanes_of(edge_looks_.least_pivot(hoop, mu_kinetic));
+    for (std::size_t i = 0; i < count; ++i) pivots_[first + i].least = least[i];
     for (std::size_t k = 0; k < zeros.angle.size(); ++k) {
       const auto angles = lanes_of(zeros.angle[k]), heights = lanes_of(zeros.height[k]);
       for (std::size_t i = 0; i < count; ++i)
-        pivot_zeros_[first + i].angle[k] = angles[i], pivot_zeros_[first + i].height[k] = heights[i];
+        pivots_[first + i].zeros.angle[k] = angles[i], pivots_[first + i].zeros.height[k] = heights[i];
     }
   }
 }
 
 template <class T>
-void CoulombLanes<T>::go_on(std::uint32_t place, const NextPhase& next) {
+void CoulombLanes<T>::go_on(std::uint32_t place, NextPhase next) {
   const PhaseMachine<S>& machine = *on_their_way_[place].machine;
   const Contact<S>& contact = machine.contact();
-  if (next.phase == Phase::flight)
+  if (next == NextPhase::leaves)
     (machine.at().normal > S(0) ? rebounding_ : flying_).push_back(place);
-  else if (next.phase == Phase::rolling)
+  else if (next == NextPhase::rolls)
     rolling_.begin(place, machine.hoop(), contact.mu_static, machine.at(), machine.runway());
   else
-    sliding_.begin(place, machine.hoop(), contact.mu_kinetic, pivot_zeros_[on_their_way_[place].design],
-                   machine.at(), machine.runway(), next.direction);
+    sliding_.begin(place, machine.hoop(), contact.mu_kinetic, pivots_[on_their_way_[place].design],
+                   machine.at(), machine.runway(), direction_of(next));
 }
 
 template <class T>

@@ -46,8 +46,8 @@ class CoulombLanes {
     std::uint32_t place;
     Flight<S> flight;
   };
-  void find_pivot_zeros(std::span<const Design> designs, const Scene& scene);
-  void go_on(std::uint32_t place, const NextPhase& next);
+  void look_at_pivots(std::span<const Design> designs, const Scene& scene);
+  void go_on(std::uint32_t place, NextPhase next);
   /// Lets some of flying_ fly, and adds them to flown_.
   void fly_some();
 
@@ -59,7 +59,8 @@ class CoulombLanes {
   std::vector<EndedPhase<S>> ended_;
   std::vector<Flown> flown_;
   std::vector<ContactState<S>> releases_;
-  std::vector<PivotZeros<S>> pivot_zeros_;  // of the designs
+  EdgeLooks<T> edge_looks_;
+  std::vector<typename SlidingLanes<T>::Pivot> pivots_;  // of the designs
 };
 
 }  // namespace leapmap

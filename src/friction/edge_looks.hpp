@@ -3,17 +3,17 @@
 /// how far that is, by looks at the pivot.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 
 #include "hoop/sliding.hpp"
 
 namespace leapmap {
 
-/// Looks all round a turn, as many at once as T has lanes.
+/// Looks all round a turn at the pivots of as many designs as T has lanes.
 template <class T>
 class EdgeLooks {
  public:
@@ -28,23 +28,23 @@ class EdgeLooks {
 
   /// Zero if the pivot is above zero all round; else what it is at least, so near to an edge. It is
   /// Ic + (rho s)^2 - m rho s (1 - rho c), and between two looks, h apart, it comes down by at most h^2 / 8
-  /// times |pivot''| <= 2 rho^2 + |m| rho (1 + 2 rho).
-  S least_pivot(const Hoop<S>& hoop, const S& friction) const {
-    const T rho(hoop.rho), m(friction), one(S(1));
+  /// times |pivot''| <= 2 rho^2 + |m| rho (1 + 2 rho). Sliding the other way it goes through the same values.
+  T least_pivot(const Hoop<T>& hoop, const T& friction) const {
+    using std::abs;
+    const T rho = hoop.rho, one(S(1)), two(S(2));
     T least(std::numeric_limits<S>::max());
-    for (std::size_t k = 0; k < looks_a_turn; k += width) {
-      const T s = rho * Lanes<T>::load(sin_.data() + k), c = Lanes<T>::load(cos_.data() + k);
-      least = smaller(least, s * (s - m * (one - rho * c)));
+    for (std::size_t k = 0; k < looks_a_turn; ++k) {
+      const T s = rho * T(sin_[k]);
+      least = smaller(least, s * (s - friction * (one - rho * T(cos_[k]))));
     }
-    const auto lanes = lanes_of(least);
-    const S step = S(2) * pi_of<S> / S(looks_a_turn), size = std::abs(friction) * hoop.rho;
-    const S off = step * step / S(8) * (S(2) * hoop.rho * hoop.rho + size * (S(1) + S(2) * hoop.rho));
-    if (hoop.Ic + *std::min_element(lanes.begin(), lanes.end()) > off) return S(0);
-    return S(near_edge) * (hoop.rho * hoop.rho + size * (S(1) + hoop.rho));
+    const T size = abs(friction) * rho;
+    const T off = T(S(half_a_step * half_a_step / 2.0)) * (two * rho * rho + size * (one + two * rho));
+    return select(hoop.Ic + least > off, T(S(0)), T(S(near_edge)) * (rho * rho + size * (one + rho)));
   }
 
  private:
-  static constexpr std::size_t looks_a_turn = 48, width = Lanes<T>::count;
+  static constexpr std::size_t looks_a_turn = 48;
+  static constexpr double half_a_step = std::numbers::pi / double(looks_a_turn);
   static constexpr double near_edge = 0.05;  // nearer n0 needs care [rad]
 
   std::array<S, looks_a_turn> sin_, cos_;

@@ -46,20 +46,17 @@ SlidingLanes<T>::SlidingLanes(double tolerance, std::size_t most)
 }
 
 template <class T>
-void SlidingLanes<T>::begin(std::uint32_t place, const Hoop<S>& hoop, const S& mu_kinetic,
-                            const PivotZeros<S>& zeros, const ContactState<S>& at, const S& runway,
-                            int direction) {
+void SlidingLanes<T>::begin(std::uint32_t place, const Hoop<S>& hoop, const S& mu_kinetic, const Pivot& pivot,
+                            const ContactState<S>& at, const S& runway, int direction) {
   const S friction = direction > 0 ? mu_kinetic : -mu_kinetic;
-  slides_[place] = {runway,           mu_kinetic, edge_looks_.least_pivot(hoop, friction),
-                    direction,        false,      false,
-                    PhaseEnd::failed, 0};
+  slides_[place] = {runway, mu_kinetic, pivot.least, direction, false, false, PhaseEnd::failed, 0};
   hoops_.template store<S>(numbers_of(hoop), &place, 1);
   states_.template store<S>(
       {at.time, at.travel, at.angle, at.spin, at.slip,
        free_normal_force(hoop, trig(at.angle), S(at.spin * at.spin)), friction, S(longest_angle)},
       &place, 1);
   const S side = S(direction);
-  const auto& [angle, height] = zeros;
+  const auto& [angle, height] = pivot.zeros;
   zeros_.template store<S>({side * angle[0], side * angle[1], side * angle[2], side * angle[3], height[0],
                             height[1], height[2], height[3]},
                            &place, 1);

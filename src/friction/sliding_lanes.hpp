@@ -26,8 +26,13 @@ class SlidingLanes {
   /// tolerance: as of SlidingLeg. most: designs on their way at once.
   SlidingLanes(double tolerance, std::size_t most);
 
-  /// Begins a slide, which the passes to come take on. zeros: of the pivot, sliding downhill.
-  void begin(std::uint32_t place, const Hoop<S>& hoop, const S& mu_kinetic, const PivotZeros<S>& zeros,
+  /// What is known of a design's pivot before it slides.
+  struct Pivot {
+    PivotZeros<S> zeros;  ///< sliding downhill
+    S least;              ///< as of EdgeLooks
+  };
+  /// Begins a slide, which the passes to come take on.
+  void begin(std::uint32_t place, const Hoop<S>& hoop, const S& mu_kinetic, const Pivot& pivot,
              const ContactState<S>& at, const S& runway, int direction);
   std::size_t waiting() const { return waiting_.size(); }
   void clear() { waiting_.clear(); }
@@ -114,7 +119,6 @@ class SlidingLanes {
   Panels panels_;
   S clear_of_zeros_;  ///< how far panels keep from the pivot's zeros (resolved_length's stretch)
   SlidingLeg<S> leg_;
-  EdgeLooks<T> edge_looks_;
   std::vector<Slide> slides_;
   PackedRows<S, 9> hoops_;
   PackedRows<S, 8> states_;  // states: time, travel, angle, spin, slip; n0, friction, longest panel

@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <limits>
 
+#include "numerics/exponential.hpp"
 #include "trajectory/gradient.hpp"
 
 namespace leapmap {
@@ -58,13 +59,20 @@ auto SlidingPanels<S>::at_nodes(const Slide& slide, const ContactState<S>& from,
   const auto put = [](const T& value, Values& values, std::size_t i) { Grid::put(value, values, i); };
   const Hoop<T> hoop = widened<T>(slide.hoop);
   AtNodes nodes_at;
-  T least(std::numeric_limits<Number>::max());
+  // What waits for one another goes in loops of its own: the processor then sees nodes ahead.
   for (std::size_t i = 0; i < nodes; i += width) {
     const T q = T(stretch.begin) + T(stretch.span) * Grid::shared(grid_.node, i);
-    const T w = q * T(S(2) * stretch.curve * stretch.span), x = T(stretch.shift) + T(stretch.curve) * q * q;
-    const Trig<T> phi = trig(T(from.angle) + T(way) * x);
-    const SlidingCoefficients<T> at = slide.coefficients(hoop, phi, T(way) * x);
-    nodes_at.phi[i / width] = phi, nodes_at.sliding[i / width] = at;
+    const T x = T(stretch.shift) + T(stretch.curve) * q * q;
+    put(q * T(S(2) * stretch.curve * stretch.span), nodes_at.weight, i);
+    put(x, nodes_at.angle, i);
+    nodes_at.phi[i / width] = trig(T(from.angle) + T(way) * x);
+  }
+  T least(std::numeric_limits<Number>::max());
+  for (std::size_t i = 0; i < nodes; i += width) {
+    const T w = Grid::at(nodes_at.weight, i);
+    const Trig<T>& phi = nodes_at.phi[i / width];
+    const SlidingCoefficients<T> at = slide.coefficients(hoop, phi, T(way) * Grid::at(nodes_at.angle, i));
+    nodes_at.sliding[i / width] = at;
     least = smaller(least, at.pivot);
     const T idle = free_normal_force(hoop, phi, T(S(0))), torque = hoop.drive / hoop.Ic;
     const T turned = T(way) * w, grows = T(S(2)) * at.turn * hoop.rho * phi.cos;
@@ -76,8 +84,6 @@ auto SlidingPanels<S>::at_nodes(const Slide& slide, const ContactState<S>& from,
       put(turned * grows, nodes_at.grows, i);
       put(turned * T(S(2)) * (at.turn * idle + torque), nodes_at.drives, i);
     }
-    put(w, nodes_at.weight, i);
-    put(x, nodes_at.angle, i);
   }
   nodes_at.least_pivot = least;
   return nodes_at;
@@ -88,7 +94,7 @@ auto SlidingPanels<S>::at_nodes(const Slide& slide, const ContactState<S>& from,
 template <class S>
 void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
                                       Panel& panel) const {
-  using std::exp, std::sqrt;
+  using std::sqrt;
   constexpr std::size_t width = Grid::width;
   const auto get = [](const Values& values, std::size_t i) { return Grid::at(values, i); };
   const auto put = [](const T& value, Values& values, std::size_t i) { Grid::put(value, values, i); };
@@ -124,16 +130,14 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   panel.growth = growth.running;
   Values grown_by;
   Values& driven = panel.driven_rate;
-  for (std::size_t i = 0; i < nodes; i += width) {
-    const T grown = exp(get(panel.growth, i));
-    put(grown, grown_by, i);
-    put(get(at.drives, i) * reciprocal(grown), driven, i);
-  }
+  for (std::size_t i = 0; i < nodes; i += width) put(exponential(get(panel.growth, i)), grown_by, i);
+  for (std::size_t i = 0; i < nodes; i += width)
+    put(get(at.drives, i) * reciprocal(get(grown_by, i)), driven, i);
   const typename Grid::Integrated drives = grid_.integrated(driven);
   panel.driven = drives.running;
   start.u = from.spin * from.spin, start.force = slide.free_force;
   const S start_y = panel.start_y = by_force ? start.force : start.u;
-  const S end_growth = exp(growth.whole), end_driven = drives.whole;
+  const S end_growth = exponential(growth.whole), end_driven = drives.whole;
   const S end_y = end_growth * (start_y + end_driven);
   const auto force = [&]<class R>(const Hoop<R>& hoop_at, const Trig<R>& phi, const R& y) {
     return by_force ? y : free_normal_force(hoop_at, phi, y);
@@ -144,16 +148,21 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   const S fast(std::numeric_limits<Number>::max());
   T least_u(smaller(select(start.u > S(0), start.u, fast), select(rests, fast, end.u)));
   Values& time_rate = panel.time_rate;
+  Values squared;
+  for (std::size_t i = 0; i < nodes; i += width) {
+    const Trig<T>& phi = at.phi[i / width];
+    const T y = get(grown_by, i) * (T(start_y) + get(panel.driven, i));
+    const T u = spin_squared(hoops, phi, y, by_force);
+    least_u = smaller(least_u, u);
+    put(u, squared, i);
+    put(force(hoops, phi, y), panel.free_force.value, i);
+    put(get(at.weight, i) * reciprocal_sqrt(u), time_rate, i);
+  }
   for (std::size_t i = 0; i < nodes; i += width) {
     const Trig<T>& phi = at.phi[i / width];
     const SlidingCoefficients<T>& there = at.sliding[i / width];
-    const T y = get(grown_by, i) * (T(start_y) + get(panel.driven, i));
-    const T u = spin_squared(hoops, phi, y, by_force), n0 = force(hoops, phi, y);
-    least_u = smaller(least_u, u);
-    const T w = get(at.weight, i), rate = w * reciprocal_sqrt(u);
-    put(rate, time_rate, i);
-    put(sliding_motion(hoops, phi, u, m, there, n0).slip * rate, panel.slip.rate, i);
-    put(n0, panel.free_force.value, i);
+    const T u = get(squared, i), n0 = get(panel.free_force.value, i), w = get(at.weight, i);
+    put(sliding_motion(hoops, phi, u, m, there, n0).slip * get(time_rate, i), panel.slip.rate, i);
     const T angular = there.turn * n0 + hoops.drive / hoops.Ic;
     put(T(way) * w * free_normal_force_rate(hoops, phi, u, angular), panel.free_force.rate, i);
   }
@@ -234,7 +243,7 @@ auto SlidingPanels<S>::integrate_slip(const Slide& slide, const ContactState<S>&
 template <class S>
 auto SlidingPanels<S>::state_at(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
                                 const Panel& panel, const S& place) const -> Inside {
-  using std::exp, std::sqrt;
+  using std::sqrt;
   const S beside(0.1), small(0.01);
   // The panel's tolerance is one of its whole duration, and times count from the release.
   const Mask is_late = from.time > beside * (panel.end.time - from.time);
@@ -246,7 +255,7 @@ auto SlidingPanels<S>::state_at(const Slide& slide, const ContactState<S>& from,
   const Values times = grid_.integrals(panel.time_rate);
   const auto [growth, driven, taken, slip, travel] = grid_.template values<5>(
       {&panel.growth, &panel.driven, &times, &panel.slip.value, &panel.travel.value}, place);
-  const S y = exp(growth) * (panel.start_y + driven);
+  const S y = exponential(growth) * (panel.start_y + driven);
   const S u = spin_squared(slide.hoop, trig(at.angle), y, panel.by_force);
   inside.is_sharp =
       inside.is_sharp & (u > small * larger(S(from.spin * from.spin), S(panel.end.spin * panel.end.spin)));

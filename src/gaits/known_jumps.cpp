@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <utility>
 
 namespace leapmap {
 namespace {
@@ -21,8 +20,9 @@ class AtZero {
   void add(double place, BeginAndEnd difference) {
     for (std::size_t k = 0; k < count_; ++k) {
       // The next order, from the differences of this one with the new place and without.
-      std::swap(difference, last_[k]);
-      difference = (last_[k] - difference) / (place - places_[count_ - 1 - k]);
+      const double inverse = 1.0 / (place - places_[count_ - 1 - k]);
+      const BeginAndEnd next = (difference - last_[k]) * inverse;
+      last_[k] = difference, difference = next;
     }
     last_[count_] = difference;
     places_[count_++] = place;

@@ -100,12 +100,13 @@ bool ReturnMap::go_round(const Design& design, int period, Landed& at, StateMatr
 }
 
 bool ReturnMap::close(const Design& design, int period, const Landed& near, Orbit& orbit) {
-  constexpr int most_steps = 40;
+  constexpr int most_steps = 40, most_idle = 8;
   constexpr double farthest = 0.3;  // [rad, sqrt(g/R)] that one step may go
   constexpr double exact = 1e-10;   // of a slope
   Landed at = near;
   StateMatrix slope, slope_before = StateMatrix::Zero();
-  double before = std::numeric_limits<double>::infinity();
+  double before = std::numeric_limits<double>::infinity(), least = before;
+  int idle = 0;  // steps since the last that was half as long as any before: where all is chaos, it wanders
   for (int step = 0; step < most_steps; ++step) {
     Landed there = at;
     if (!go_round(design, period, there, slope)) return false;
@@ -121,6 +122,9 @@ bool ReturnMap::close(const Design& design, int period, const Landed& near, Orbi
     const bool is_rounding = length == 0.0 || (length <= 1e-9 && length >= 0.25 * before);
     if (is_known || is_rounding) return describe(design, period, at, slope, orbit);
     before = length, slope_before = slope;
+    idle = length < 0.5 * least ? 0 : idle + 1;
+    least = std::min(least, length);
+    if (idle == most_idle) return false;
   }
   return false;
 }
