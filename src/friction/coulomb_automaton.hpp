@@ -52,15 +52,17 @@ Flight<S> flight_from(const Hoop<S>& hoop, const ContactState<S>& at) {
   return at.normal > S(0) ? fly_off(hoop, lift_off, at.normal) : fly(hoop, lift_off);
 }
 
-/// One design on its way through its phases.
+/// One design on its way through its phases, which fills in its outcome.
 template <class S>
 class PhaseMachine {
  public:
-  /// from: the release, or a state just after a landing. Scene and observer have to outlive the machine.
+  /// from: the release, or a state just after a landing. Scene, observer and outcome have to outlive the
+  /// machine.
   PhaseMachine(const Design& design, const ContactState<S>& from, const Scene& scene,
-               const CoulombObserver& observer)
+               const CoulombObserver& observer, Outcome& outcome)
       : scene_(&scene),
         observer_(&observer),
+        outcome_(&outcome),
         hoop_(reduce<S>(design, scene)),
         contact_(contact_of<S>(design, scene)),
         runway_(S(2) * std::numbers::pi_v<S> * S(scene.runway)),
@@ -74,7 +76,7 @@ class PhaseMachine {
     released_ = contact_energy(hoop_, at_);
     slipped_ = driven_ = S(0);
     slides_ = false;
-    sequence_ = {}, outcome_ = {};
+    sequence_ = {}, *outcome_ = {};
     rocking_.restart();
     const S rounding(1e-14);
     held_ = resistance_ > S(0) && at_.spin * at_.spin == S(0) &&
@@ -136,13 +138,13 @@ class PhaseMachine {
     if (!jumps && !(std::abs(at_.travel) < runway_)) return ended_as(Status::no_jump);
     const Landing<S> landing = land(hoop_, trig(at_.angle), {at_.slip, at_.normal, at_.spin},
                                     contact_.mu_kinetic, contact_.restitution, contact_.rest_speed);
-    if (jumps) keep_measures(measures_of(hoop_, S(at_.travel - left_at), at_, landing), outcome_);
+    if (jumps) keep_measures(measures_of(hoop_, S(at_.travel - left_at), at_, landing), *outcome_);
     at_.spin = landing.after.spin, at_.slip = landing.after.slip;
     at_.normal = landing.after.normal;
     if (!jumps && at_.spin * hoop_.resistance < S(0))
       return ended_as(Status::failed, reverses_against_resistance);
     if (jumps) {
-      outcome_.landing_spin = static_cast<double>(at_.spin);
+      outcome_->landing_spin = static_cast<double>(at_.spin);
       return ended_as(Status::jumped);
     }
     // A flight that rounding made of n0 = 0 takes no time; it is contact.
@@ -153,8 +155,6 @@ class PhaseMachine {
   const Contact<S>& contact() const { return contact_; }
   /// How far the centre may travel.
   const S& runway() const { return runway_; }
-  /// Once it has ended.
-  const Outcome& outcome() const { return outcome_; }
   /// Where the phase told last begins, or where the design ended: of one that jumps just after the landing.
   const ContactState<S>& at() const { return at_; }
 
@@ -174,7 +174,7 @@ class PhaseMachine {
     slides_ = next != NextPhase::rolls;
     if (!begin_phase(slides_ ? Phase::sliding : Phase::rolling, direction_of(next))) return next;
     ended_as(Status::stalled);
-    outcome_.slip_distance = Outcome::none;  // it goes on slipping, a little less on every swing
+    outcome_->slip_distance = Outcome::none;  // it goes on slipping, a little less on every swing
     return NextPhase::ends;
   }
 
@@ -190,14 +190,14 @@ class PhaseMachine {
   NextPhase ended_as(Status status, const char* reason = nullptr) {
     if (observer_->end) observer_->end(in_double(at_));
     if (status == Status::failed || status == Status::indeterminate) {
-      outcome_ = {};
+      *outcome_ = {};
     } else {
-      outcome_.slip_distance = static_cast<double>(slipped_);
-      to_seconds(outcome_, time_unit(*scene_));
+      outcome_->slip_distance = static_cast<double>(slipped_);
+      to_seconds(*outcome_, time_unit(*scene_));
     }
-    outcome_.status = status;
-    outcome_.failure = reason;
-    outcome_.phase_sequence = sequence_.code();
+    outcome_->status = status;
+    outcome_->failure = reason;
+    outcome_->phase_sequence = sequence_.code();
     return NextPhase::ends;
   }
 
@@ -216,16 +216,17 @@ class PhaseMachine {
                                static_cast<double>(lift_off.spin)};
     const Flight<double> flown{static_cast<double>(flight.height), static_cast<double>(flight.apex_time),
                                static_cast<double>(flight.flight_time), static_cast<double>(flight.dip)};
-    const bool jumps = consider(outcome_, *scene_, told, flown, static_cast<double>(at_.travel));
+    const bool jumps = consider(*outcome_, *scene_, told, flown, static_cast<double>(at_.travel));
     if (observer_->lift_off) observer_->lift_off(told, flown);
     if (jumps) {
-      outcome_.energy_lost = static_cast<double>(released_ + driven_ - contact_energy(hoop_, at_));
+      outcome_->energy_lost = static_cast<double>(released_ + driven_ - contact_energy(hoop_, at_));
     }
     return jumps;
   }
 
   const Scene* scene_;
   const CoulombObserver* observer_;
+  Outcome* outcome_;
   Hoop<S> hoop_;
   Contact<S> contact_;
   S runway_, resistance_;
@@ -236,7 +237,6 @@ class PhaseMachine {
   bool held_;           // it begins at rest, and the resisting torque is the larger one
   PhaseSequence sequence_;
   Rocking rocking_;
-  Outcome outcome_;
 };
 
 /// Goes through the phases until the design ends. roll(hoop, contact, state, runway) and slide(...,
@@ -244,7 +244,8 @@ class PhaseMachine {
 template <class S, class Roll, class Slide>
 Outcome go_through_phases(Start start, const Design& design, ContactState<S>& from, const Scene& scene,
                           const CoulombObserver& observer, const Roll& roll, const Slide& slide) {
-  PhaseMachine<S> machine(design, from, scene, observer);
+  Outcome outcome;
+  PhaseMachine<S> machine(design, from, scene, observer, outcome);
   for (NextPhase next = machine.begin(start); next != NextPhase::ends;) {
     throw_if_stopped();
     if (next == NextPhase::leaves) {
@@ -258,8 +259,8 @@ Outcome go_through_phases(Start start, const Design& design, ContactState<S>& fr
             : slide(machine.hoop(), machine.contact(), at, machine.runway(), direction_of(next));
     next = machine.after(end, at);
   }
-  if (machine.outcome().status == Status::jumped) from = machine.at();
-  return machine.outcome();
+  if (outcome.status == Status::jumped) from = machine.at();
+  return outcome;
 }
 
 }  // namespace leapmap

@@ -28,7 +28,6 @@ void CoulombLanes<T>::solve(Start start, std::span<const Design> designs, std::s
   const auto take_up = [&](std::uint32_t place, NextPhase next) {
     auto& [design, machine] = on_their_way_[place];
     while (next == NextPhase::ends) {
-      outcomes[design] = machine->outcome();
       const bool jumps = outcomes[design].status == Status::jumped;
       if (jumps) states[design] = machine->at();
       if (!with_times_) outcomes[design].jump_time = outcomes[design].first_jump_time = Outcome::none;
@@ -45,7 +44,7 @@ void CoulombLanes<T>::solve(Start start, std::span<const Design> designs, std::s
       free_.pop_back();
       auto& [design, machine] = on_their_way_[place];
       design = unbegun++;
-      machine.emplace(designs[design], states[design], scene, nobody);
+      machine.emplace(designs[design], states[design], scene, nobody, outcomes[design]);
       take_up(place, machine->begin(start));
     }
     ended_.clear(), flown_.clear();
@@ -69,17 +68,17 @@ void CoulombLanes<T>::solve(Start start, std::span<const Design> designs, std::s
 
 template <class T>
 void CoulombLanes<T>::look_at_pivots(std::span<const Design> designs, const Scene& scene) {
-  constexpr std::size_t width = Lanes<T>::count;
+  constexpr std::size_t width = Lanes<W>::count;
   pivots_.resize(designs.size());
   for (std::size_t first = 0; first < designs.size(); first += width) {
     const std::size_t count = std::min(width, designs.size() - first);
     const auto design_of = [&](std::size_t i) -> const Design& {
       return designs[first + (i < count ? i : 0)];
     };
-    const T mu_kinetic =
-        gathered<T>([&](std::size_t i) { return contact_of<S>(design_of(i), scene).mu_kinetic; });
-    const Hoop<T> hoop = gathered_designs<T>(design_of).hoop;
-    const PivotZeros<T> zeros = pivot_zeros(hoop, mu_kinetic);
+    const W mu_kinetic =
+        gathered<W>([&](std::size_t i) { return contact_of<S>(design_of(i), scene).mu_kinetic; });
+    const Hoop<W> hoop = gathered_designs<W>(design_of).hoop;
+    const PivotZeros<W> zeros = pivot_zeros(hoop, mu_kinetic);
     const auto least = lanes_of(edge_looks_.least_pivot(hoop, mu_kinetic));
     for (std::size_t i = 0; i < count; ++i) pivots_[first + i].least = least[i];
     for (std::size_t k = 0; k < zeros.angle.size(); ++k) {

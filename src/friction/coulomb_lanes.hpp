@@ -36,6 +36,7 @@ class CoulombLanes {
              const Scene& scene, std::span<Outcome> outcomes, const GoesOn& goes_on = {});
 
  private:
+  using W = WideOf<T>;  ///< of what takes one step after the other
   static constexpr std::size_t most_on_their_way = 64;
 
   struct OnItsWay {
@@ -59,7 +60,7 @@ class CoulombLanes {
   std::vector<EndedPhase<S>> ended_;
   std::vector<Flown> flown_;
   std::vector<ContactState<S>> releases_;
-  EdgeLooks<T> edge_looks_;
+  EdgeLooks<W> edge_looks_;
   std::vector<typename SlidingLanes<T>::Pivot> pivots_;  // of the designs
 };
 

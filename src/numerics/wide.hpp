@@ -56,6 +56,7 @@ struct Wide {
   friend Wide abs(const Wide& a) { return {abs(a.low), abs(a.high)}; }
   friend Wide sqrt(const Wide& a) { return {sqrt(a.low), sqrt(a.high)}; }
   friend Wide floor(const Wide& a) { return {floor(a.low), floor(a.high)}; }
+  friend Wide log(const Wide& a) { return {log(a.low), log(a.high)}; }
   friend Wide acos(const Wide& a) { return {acos(a.low), acos(a.high)}; }
   friend Wide asin(const Wide& a) { return {asin(a.low), asin(a.high)}; }
   friend Wide atan2(const Wide& y, const Wide& x) { return {atan2(y.low, x.low), atan2(y.high, x.high)}; }
