@@ -152,7 +152,7 @@ class Rocking {
            std::abs(now.angle - before.angle) < nothing;
   }
 
-  std::array<Begun, remembered> begun_;  // those before count_; the others are never read
+  std::array<Begun, remembered> begun_;  // the last ones; what has not begun yet is never read
   std::array<int, cycles.size()> shrinking_{};
   int count_ = 0;
 };

@@ -70,7 +70,7 @@ class PhaseMachine {
     put(from);
   }
 
-  /// Lets the same design begin once more, from there.
+  /// Lets the same design begin once more, from there, with an outcome that says nothing.
   void put(const ContactState<S>& from) {
     at_ = from;
     released_ = contact_energy(hoop_, at_);

@@ -2,6 +2,7 @@
 #include "friction/coulomb_lanes.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 #include "support/stop.hpp"
 
@@ -31,7 +32,10 @@ void CoulombLanes<T>::solve(Start start, std::span<const Design> designs, std::s
       const bool jumps = outcomes[design].status == Status::jumped;
       if (jumps) states[design] = machine->at();
       if (!with_times_) outcomes[design].jump_time = outcomes[design].first_jump_time = Outcome::none;
-      if (!jumps || !goes_on || !goes_on(design)) return free_.push_back(place);
+      if (!jumps || !goes_on || !goes_on(design)) {
+        machine.reset();
+        return free_.push_back(place);
+      }
       machine->put(states[design]);
       next = machine->begin(Start::landing);
     }
@@ -91,6 +95,7 @@ void CoulombLanes<T>::look_at_pivots(std::span<const Design> designs, const Scen
 
 template <class T>
 void CoulombLanes<T>::go_on(std::uint32_t place, NextPhase next) {
+  assert(next != NextPhase::ends);
   const PhaseMachine<S>& machine = *on_their_way_[place].machine;
   const Contact<S>& contact = machine.contact();
   if (next == NextPhase::leaves)

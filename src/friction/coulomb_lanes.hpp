@@ -9,8 +9,10 @@
 #include <vector>
 
 #include "friction/coulomb_automaton.hpp"
+#include "friction/edge_looks.hpp"
 #include "friction/rolling_lanes.hpp"
 #include "friction/sliding_lanes.hpp"
+#include "numerics/wide.hpp"
 
 namespace leapmap {
 

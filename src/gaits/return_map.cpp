@@ -106,7 +106,7 @@ bool ReturnMap::close(const Design& design, int period, const Landed& near, Orbi
   Landed at = near;
   StateMatrix slope, slope_before = StateMatrix::Zero();
   double before = std::numeric_limits<double>::infinity(), least = before;
-  int idle = 0;  // steps since the last that was half as long as any before: where all is chaos, it wanders
+  int idle = 0;  // steps since one that was half as long as the last such one: where all is chaos, it wanders
   for (int step = 0; step < most_steps; ++step) {
     Landed there = at;
     if (!go_round(design, period, there, slope)) return false;
@@ -122,8 +122,8 @@ bool ReturnMap::close(const Design& design, int period, const Landed& near, Orbi
     const bool is_rounding = length == 0.0 || (length <= 1e-9 && length >= 0.25 * before);
     if (is_known || is_rounding) return describe(design, period, at, slope, orbit);
     before = length, slope_before = slope;
-    idle = length < 0.5 * least ? 0 : idle + 1;
-    least = std::min(least, length);
+    ++idle;
+    if (length < 0.5 * least) least = length, idle = 0;
     if (idle == most_idle) return false;
   }
   return false;

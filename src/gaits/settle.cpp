@@ -168,15 +168,16 @@ bool shrinks(std::span<const Landed> seen, std::size_t period) {
 
 }  // namespace
 
-/// The orbit that it is drawn to: of the shortest period after which it is nearly where it was. Where jumps
-/// are not far more exact than that, an orbit may close from some of its landings alone.
+/// The orbit that it is drawn to: of the shortest period after which it is nearly where it was. Newton's
+/// method may miss it from the first landing of a round and find it from the last. Where jumps are solved
+/// coarsely, it may find it from any other alone.
 bool GaitSolver::find_orbit(const Design& design, const Course& course, Orbit& orbit) {
   const std::vector<Landed>& seen = course.seen;
-  const bool is_coarse = map_.nearness() > 0.01 * scene_.gait_tolerance;
+  const bool is_coarse = map_.nearness() > 1e-6;
   for (std::size_t period = 1; period < seen.size(); ++period) {
     const double gap = between(seen[0], seen[period]).lpNorm<Eigen::Infinity>();
     if (!(gap < scene_.gait_tolerance) && !shrinks(seen, period)) continue;
-    for (std::size_t k = 0; k < (is_coarse ? period : 1); ++k) {
+    for (std::size_t k = 0; k < period; k += is_coarse ? 1 : std::max<std::size_t>(period - 1, 1)) {
       if (!map_.close(design, static_cast<int>(period), seen[k], orbit)) continue;
       if (std::abs(orbit.multiplier) < 1.0 && is_near(seen[k], gap, orbit, off(course))) return true;
       break;

@@ -43,7 +43,8 @@ std::vector<Outcome> solve(std::span<const Design> designs, const Scene& scene =
 
 /// Solves many designs into existing outcomes.
 /// @param outcomes  of the same size as `designs`
-/// @throws InputError as for one design, with the design's number, or if the sizes differ; Stopped
+/// @throws InputError as for one design, with the design's number, or if the sizes differ; Stopped, after
+///   which the outcomes mean nothing
 void solve_into(std::span<Outcome> outcomes, std::span<const Design> designs, const Scene& scene = {},
                 const SolveOptions& options = {});
 

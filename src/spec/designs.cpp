@@ -129,10 +129,10 @@ void DesignSpace::fill(const Tile& tile, std::size_t first, std::span<Design> de
     take_values(position, values);
     designs[i] = varied_.at(values, bodies.empty() ? nullptr : &bodies[i]);
     ++i, ++position[last];
-    // Of the row's first: a copy of one that has just been changed would wait for that to reach memory.
-    const Design& first_of_row = designs[i - 1];
+    // Always the same one is copied: one that has just been changed would have to reach memory first.
+    const Design& pattern = designs[i - 1];
     for (; in_rows && i < designs.size() && position[last] < row; ++i, ++position[last]) {
-      designs[i] = first_of_row;
+      designs[i] = pattern;
       designs[i].*varied_.variables()[last].parameter() = spec_.axes[last].values[position[last]];
     }
     for (std::size_t k = last; k > 0 && position[k] == tile.start[k] + tile.extent[k]; --k)
