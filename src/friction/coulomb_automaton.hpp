@@ -19,7 +19,7 @@
 
 namespace leapmap {
 
-/// What a design goes on as; ends: it does not.
+/// How a design goes on, or that it ends.
 enum class NextPhase { rolls, slides_forwards, slides_backwards, leaves, ends };
 
 /// The way that it slides, 1 or -1; 0: it does not.
@@ -70,7 +70,7 @@ class PhaseMachine {
     put(from);
   }
 
-  /// Lets the same design begin once more, from there, with an outcome that says nothing.
+  /// Lets the same design begin once more, from there. Its outcome is empty again.
   void put(const ContactState<S>& from) {
     at_ = from;
     released_ = contact_energy(hoop_, at_);
@@ -212,12 +212,13 @@ class PhaseMachine {
 
   /// Tells of a flight, and whether it is the jump.
   bool look_at(const LiftOff<S>& lift_off, const Flight<S>& flight) {
-    const LiftOff<double> told{static_cast<double>(lift_off.time), static_cast<double>(lift_off.angle),
-                               static_cast<double>(lift_off.spin)};
+    const LiftOff<double> plain_lift_off{static_cast<double>(lift_off.time),
+                                         static_cast<double>(lift_off.angle),
+                                         static_cast<double>(lift_off.spin)};
     const Flight<double> flown{static_cast<double>(flight.height), static_cast<double>(flight.apex_time),
                                static_cast<double>(flight.flight_time), static_cast<double>(flight.dip)};
-    const bool jumps = consider(*outcome_, *scene_, told, flown, static_cast<double>(at_.travel));
-    if (observer_->lift_off) observer_->lift_off(told, flown);
+    const bool jumps = consider(*outcome_, *scene_, plain_lift_off, flown, static_cast<double>(at_.travel));
+    if (observer_->lift_off) observer_->lift_off(plain_lift_off, flown);
     if (jumps) {
       outcome_->energy_lost = static_cast<double>(released_ + driven_ - contact_energy(hoop_, at_));
     }

@@ -19,7 +19,7 @@ void CoulombLanes<T>::solve(std::span<const Design> designs, const Scene& scene,
 template <class T>
 void CoulombLanes<T>::solve(Start start, std::span<const Design> designs, std::span<ContactState<S>> states,
                             const Scene& scene, std::span<Outcome> outcomes, const GoesOn& goes_on) {
-  const CoulombObserver nobody;
+  const CoulombObserver no_observer;
   constexpr std::size_t width = Lanes<T>::count;
   look_at_pivots(designs, scene);
   // A call that ended by an exception leaves phases behind.
@@ -48,7 +48,7 @@ void CoulombLanes<T>::solve(Start start, std::span<const Design> designs, std::s
       free_.pop_back();
       auto& [design, machine] = on_their_way_[place];
       design = unbegun++;
-      machine.emplace(designs[design], states[design], scene, nobody, outcomes[design]);
+      machine.emplace(designs[design], states[design], scene, no_observer, outcomes[design]);
       take_up(place, machine->begin(start));
     }
     ended_.clear(), flown_.clear();

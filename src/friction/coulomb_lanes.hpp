@@ -38,7 +38,7 @@ class CoulombLanes {
              const Scene& scene, std::span<Outcome> outcomes, const GoesOn& goes_on = {});
 
  private:
-  using W = WideOf<T>;  ///< of what takes one step after the other
+  using W = WideOf<T>;  ///< two batches as one, for iterations whose steps wait for each other
   static constexpr std::size_t most_on_their_way = 64;
 
   struct OnItsWay {

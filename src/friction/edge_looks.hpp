@@ -38,13 +38,13 @@ class EdgeLooks {
       least = smaller(least, s * (s - friction * (one - rho * T(cos_[k]))));
     }
     const T size = abs(friction) * rho;
-    const T off = T(S(half_a_step * half_a_step / 2.0)) * (two * rho * rho + size * (one + two * rho));
+    const T off = T(S(apart * apart / 8.0)) * (two * rho * rho + size * (one + two * rho));
     return select(hoop.Ic + least > off, T(S(0)), T(S(near_edge)) * (rho * rho + size * (one + rho)));
   }
 
  private:
   static constexpr std::size_t looks_a_turn = 48;
-  static constexpr double half_a_step = std::numbers::pi / double(looks_a_turn);
+  static constexpr double apart = 2.0 * std::numbers::pi / double(looks_a_turn);  // [rad]
   static constexpr double near_edge = 0.05;  // nearer n0 needs care [rad]
 
   std::array<S, looks_a_turn> sin_, cos_;

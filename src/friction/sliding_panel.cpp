@@ -59,7 +59,8 @@ auto SlidingPanels<S>::at_nodes(const Slide& slide, const ContactState<S>& from,
   const auto put = [](const T& value, Values& values, std::size_t i) { Grid::put(value, values, i); };
   const Hoop<T> hoop = widened<T>(slide.hoop);
   AtNodes nodes_at;
-  // What waits for one another goes in loops of its own: the processor then sees nodes ahead.
+  // Two short loops, as the processor looks only so many operations ahead: the next nodes' are then among
+  // them, while those of one node wait for each other.
   for (std::size_t i = 0; i < nodes; i += width) {
     const T q = T(stretch.begin) + T(stretch.span) * Grid::shared(grid_.node, i);
     const T x = T(stretch.shift) + T(stretch.curve) * q * q;

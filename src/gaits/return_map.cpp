@@ -106,7 +106,7 @@ bool ReturnMap::close(const Design& design, int period, const Landed& near, Orbi
   Landed at = near;
   StateMatrix slope, slope_before = StateMatrix::Zero();
   double before = std::numeric_limits<double>::infinity(), least = before;
-  int idle = 0;  // steps since one that was half as long as the last such one: where all is chaos, it wanders
+  int idle = 0;  // steps since the length was last halved; in chaos it wanders
   for (int step = 0; step < most_steps; ++step) {
     Landed there = at;
     if (!go_round(design, period, there, slope)) return false;

@@ -177,7 +177,8 @@ bool GaitSolver::find_orbit(const Design& design, const Course& course, Orbit& o
   for (std::size_t period = 1; period < seen.size(); ++period) {
     const double gap = between(seen[0], seen[period]).lpNorm<Eigen::Infinity>();
     if (!(gap < scene_.gait_tolerance) && !shrinks(seen, period)) continue;
-    for (std::size_t k = 0; k < period; k += is_coarse ? 1 : std::max<std::size_t>(period - 1, 1)) {
+    const std::size_t apart = is_coarse || period == 1 ? 1 : period - 1;
+    for (std::size_t k = 0; k < period; k += apart) {
       if (!map_.close(design, static_cast<int>(period), seen[k], orbit)) continue;
       if (std::abs(orbit.multiplier) < 1.0 && is_near(seen[k], gap, orbit, off(course))) return true;
       break;

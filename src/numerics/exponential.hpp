@@ -27,7 +27,7 @@ xsimd::batch<double, A> exponential(const xsimd::batch<double, A>& x) {
   constexpr double turns = 1.44269504088896338700, high = 6.93147180369123816490e-01,
                    low = 1.90821492927058770002e-10;
   // Adding it rounds to an integer and leaves that, raised by an exponent's bias, in the low bits.
-  constexpr double rounder = 6755399441055744.0 + 1023.0;  // 1.5 * 2^52
+  constexpr double rounder = 6755399441055744.0 + 1023.0;  // 1.5 * 2^52 + 1023
   const T bounded = xsimd::min(T(708.0), xsimd::max(T(-708.0), x));
   const T rounded = xsimd::fma(bounded, T(turns), T(rounder)), k = rounded - T(rounder);
   const T r = xsimd::fnma(k, T(low), xsimd::fnma(k, T(high), bounded)), r2 = r * r, r4 = r2 * r2;
