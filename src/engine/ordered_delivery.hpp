@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <exception>
@@ -19,7 +20,8 @@ namespace leapmap {
 
 /// Holds at most `most_bytes` of items that wait for their turn or for the taker; a thread that brings more
 /// waits, so that memory stays bounded when one item, or whoever takes them, is slow. Items must be begun in
-/// order for that wait to end. A single item needs no thread of its own: whoever finishes takes it.
+/// order for that wait to end. The taker looks for what is due every few milliseconds: a call for each item
+/// costs more than small ones take. A single item needs no thread of its own: whoever finishes takes it.
 template <class Item>
 class OrderedDelivery {
  public:
@@ -38,11 +40,17 @@ class OrderedDelivery {
   bool bring(std::size_t number, Item item, std::size_t bytes) {
     std::unique_lock lock(mutex_);
     const auto refused = [&] { return state_ != State::open || number >= end_; };
-    changed_.wait(lock, [&] { return refused() || number == next_ || bytes_ + bytes <= most_bytes_; });
+    const auto may_go_on = [&] { return refused() || number == next_ || bytes_ + bytes <= most_bytes_; };
+    if (!may_go_on()) {
+      ++held_up_;
+      changed_.notify_all();
+      changed_.wait(lock, may_go_on);
+      --held_up_;
+    }
     if (refused()) return false;
     bytes_ += bytes;
     waiting_.emplace(number, Waiting{std::move(item), bytes});
-    changed_.notify_all();
+    if (held_up_ > 0) changed_.notify_all();
     return true;
   }
 
@@ -72,6 +80,7 @@ class OrderedDelivery {
   }
 
  private:
+  static constexpr std::chrono::milliseconds pause{5};
   enum class State { open, finished, abandoned };
   struct Waiting {
     Item item;
@@ -82,7 +91,8 @@ class OrderedDelivery {
     std::unique_lock lock(mutex_);
     for (;;) {
       const auto due = [&] { return !waiting_.empty() && waiting_.begin()->first == next_; };
-      changed_.wait(lock, [&] { return state_ != State::open || due(); });
+      while (state_ == State::open && !due())
+        changed_.wait_for(lock, pause, [&] { return state_ != State::open || (held_up_ > 0 && due()); });
       if (state_ == State::abandoned || !due()) return;
       auto node = waiting_.extract(waiting_.begin());
       lock.unlock();
@@ -96,7 +106,7 @@ class OrderedDelivery {
       lock.lock();
       ++next_;
       bytes_ -= node.mapped().bytes;
-      changed_.notify_all();
+      if (held_up_ > 0) changed_.notify_all();
     }
   }
 
@@ -116,6 +126,7 @@ class OrderedDelivery {
   std::condition_variable changed_;
   std::map<std::size_t, Waiting> waiting_;
   std::size_t next_, bytes_ = 0;
+  std::size_t held_up_ = 0;                                    ///< threads that wait for room
   std::size_t end_ = std::numeric_limits<std::size_t>::max();  ///< the first number that will never come
   State state_ = State::open;
   std::exception_ptr failure_;

@@ -34,10 +34,9 @@ Tiling tiling_of(const Spec& spec) {
   if (spec.scatter.spreads.empty()) {
     // Some hoops take a hundred times as long as others: small enough that shards come out even. But one that
     // jumps on and on fills a lane by itself, and the others stay empty unless more of its tile do the same.
-    const std::size_t designs = designs_of(shape), some = designs / 384;
-    if (spec.scene.settle == 0) return Tiling(shape, std::clamp<std::size_t>(some, 128, 2048), 64);
-    return Tiling(shape, std::clamp<std::size_t>(some, 512, 2048),
-                  std::clamp<std::size_t>(designs / 8, 64, 512));
+    const std::size_t designs = designs_of(shape), most = std::clamp<std::size_t>(designs / 192, 256, 2048);
+    if (spec.scene.settle == 0) return Tiling(shape, most);
+    return Tiling(shape, std::max<std::size_t>(most, 512), std::clamp<std::size_t>(designs / 8, 64, 512));
   }
   constexpr std::size_t most_hoops = 1 << 20;  // of a tile: some tenths of a second, with friction seconds
   const std::size_t most =

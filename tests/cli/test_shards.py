@@ -336,9 +336,10 @@ def test_a_map_of_thousands_of_tiles_has_shards_that_are_resumed_checked_and_joi
     axes = {"mu_static": (0.3, 0.9), "mu_kinetic": (0.2, 0.3), "restitution": (0, 0.4)}
     design = {
         "slope": (0.2, 0.6), "mass_ratio": (1, 4), "offset_ratio": (0.6, 1), "inertia_factor": (0.8, 1),
-        "release_angle": (3, 3.3)
+        "release_angle": (3, 3.3), "release_spin": (0, 0.2), "drive_torque": (0, 0.02),
+        "resisting_torque": (0, 0.01)
     }
-    said = lambda parts: "".join(f"{name} = {{ from = {a}, to = {b}, count = 5 }}\n" for name,
+    said = lambda parts: "".join(f"{name} = {{ from = {a}, to = {b}, count = 3 }}\n" for name,
                                  (a, b) in parts.items())
     spec = (f'[scene]\nfriction = "coulomb"\nrunway = 1\n{said(axes)}[design]\n{said(design)}[numerics]\n'
             'audit = 0\n[output]\nfields = ["status"]\n')

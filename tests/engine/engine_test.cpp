@@ -194,6 +194,21 @@ TEST(OrderedDelivery, HandsOnInOrderAndHoldsBackTheFast) {
   EXPECT_EQ(order, (std::vector<int>{10, 11, 12, 13}));
 }
 
+TEST(OrderedDelivery, HandsOnWhatIsDueBeforeMoreIsBrought) {
+  std::atomic<int> taken{0};
+  OrderedDelivery<int> delivery(
+      0, [&](int&) { ++taken; }, 100);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_TRUE(delivery.bring(i, 0, 1));
+    const auto begin = std::chrono::steady_clock::now();  // ten seconds are for the slowest machine
+    while (taken <= static_cast<int>(i) &&
+           std::chrono::steady_clock::now() - begin < std::chrono::seconds(10))
+      std::this_thread::yield();
+    EXPECT_EQ(taken, static_cast<int>(i) + 1);
+  }
+  delivery.finish();
+}
+
 TEST(OrderedDelivery, HoldsBackTheFastWhileTakingIsSlow) {
   std::atomic<int> brought{0}, most_ahead{0};
   int taken = 0;
