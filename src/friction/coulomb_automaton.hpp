@@ -27,6 +27,9 @@ inline int direction_of(NextPhase next) {
   return next == NextPhase::slides_forwards ? 1 : next == NextPhase::slides_backwards ? -1 : 0;
 }
 
+/// How far a design is followed that jumps.
+enum class Followed { to_landing, to_lift_off };
+
 /// A contact at v != 0 slides; at v = 0 the forces of rolling decide.
 template <class S>
 NextPhase contact_phase(const Hoop<S>& hoop, const Contact<S>& contact, const ContactState<S>& at,
@@ -59,14 +62,15 @@ class PhaseMachine {
   /// from: the release, or a state just after a landing. Scene, observer and outcome have to outlive the
   /// machine.
   PhaseMachine(const Design& design, const ContactState<S>& from, const Scene& scene,
-               const CoulombObserver& observer, Outcome& outcome)
+               const CoulombObserver& observer, Outcome& outcome, Followed followed = Followed::to_landing)
       : scene_(&scene),
         observer_(&observer),
         outcome_(&outcome),
         hoop_(reduce<S>(design, scene)),
         contact_(contact_of<S>(design, scene)),
         runway_(S(2) * std::numbers::pi_v<S> * S(scene.runway)),
-        resistance_(design.resisting_torque) {
+        resistance_(design.resisting_torque),
+        followed_(followed) {
     put(from);
   }
 
@@ -131,6 +135,7 @@ class PhaseMachine {
     if (sinks_without_motor()) return ended_as(Status::indeterminate);
     begin_phase(Phase::flight, 0);
     const bool jumps = look_at(lift_off, flight);
+    if (jumps && followed_ == Followed::to_lift_off) return ended_as(Status::jumped);
     const S left_at = at_.travel;
     const S left = at_.angle;
     at_ = after_flight(hoop_, at_, flight.flight_time);
@@ -155,7 +160,8 @@ class PhaseMachine {
   const Contact<S>& contact() const { return contact_; }
   /// How far the centre may travel.
   const S& runway() const { return runway_; }
-  /// Where the phase told last begins, or where the design ended: of one that jumps just after the landing.
+  /// Where the phase told last begins, or where the design ended: one that jumps just after the landing, or
+  /// at the lift-off if it is followed no further.
   const ContactState<S>& at() const { return at_; }
 
  private:
@@ -231,6 +237,7 @@ class PhaseMachine {
   Hoop<S> hoop_;
   Contact<S> contact_;
   S runway_, resistance_;
+  Followed followed_;
   S released_, slipped_;
   S driven_;            // work of the motor
   ContactState<S> at_;  // where the last phase began, or where all ended

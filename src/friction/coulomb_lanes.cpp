@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "support/stop.hpp"
 
@@ -13,13 +14,21 @@ void CoulombLanes<T>::solve(std::span<const Design> designs, const Scene& scene,
                             std::span<Outcome> outcomes) {
   releases_.clear();
   for (const Design& design : designs) releases_.push_back(released<S>(design));
-  solve(Start::release, designs, releases_, scene, outcomes);
+  run(Start::release, designs, releases_, scene, outcomes, followed_, {});
 }
 
 template <class T>
 void CoulombLanes<T>::solve(Start start, std::span<const Design> designs, std::span<ContactState<S>> states,
                             const Scene& scene, std::span<Outcome> outcomes, const GoesOn& goes_on) {
+  run(start, designs, states, scene, outcomes, Followed::to_landing, goes_on);
+}
+
+template <class T>
+void CoulombLanes<T>::run(Start start, std::span<const Design> designs, std::span<ContactState<S>> states,
+                          const Scene& scene, std::span<Outcome> outcomes, Followed followed,
+                          const GoesOn& goes_on) {
   const CoulombObserver no_observer;
+  const bool lands = followed == Followed::to_landing;
   constexpr std::size_t width = Lanes<T>::count;
   look_at_pivots(designs, scene);
   // A call that ended by an exception leaves phases behind.
@@ -32,6 +41,7 @@ void CoulombLanes<T>::solve(Start start, std::span<const Design> designs, std::s
       const bool jumps = outcomes[design].status == Status::jumped;
       if (jumps) states[design] = machine->at();
       if (!with_times_) outcomes[design].jump_time = outcomes[design].first_jump_time = Outcome::none;
+      if (!lands) outcomes[design].flight_time = outcomes[design].dip = Outcome::none;
       if (!jumps || !goes_on || !goes_on(design)) {
         machine.reset();
         return free_.push_back(place);
@@ -48,7 +58,7 @@ void CoulombLanes<T>::solve(Start start, std::span<const Design> designs, std::s
       free_.pop_back();
       auto& [design, machine] = on_their_way_[place];
       design = unbegun++;
-      machine.emplace(designs[design], states[design], scene, no_observer, outcomes[design]);
+      machine.emplace(designs[design], states[design], scene, no_observer, outcomes[design], followed);
       take_up(place, machine->begin(start));
     }
     ended_.clear(), flown_.clear();
@@ -58,7 +68,7 @@ void CoulombLanes<T>::solve(Start start, std::span<const Design> designs, std::s
     }
     rebounding_.clear();
     if (flying_.size() >= width || sliding_.waiting() + rolling_.waiting() == 0)
-      fly_some();
+      fly_some(lands ? HUGE_VAL : scene.hop_height);
     else if (sliding_.waiting() >= width || rolling_.waiting() == 0)
       sliding_.pass(ended_);
     else
@@ -108,7 +118,7 @@ void CoulombLanes<T>::go_on(std::uint32_t place, NextPhase next) {
 }
 
 template <class T>
-void CoulombLanes<T>::fly_some() {
+void CoulombLanes<T>::fly_some(double enough) {
   constexpr std::size_t width = Lanes<T>::count;
   const std::size_t count = std::min(width, flying_.size()), first = flying_.size() - count;
   if (count == 0) return;
@@ -125,7 +135,8 @@ void CoulombLanes<T>::fly_some() {
   hoop.cos_slope = of_hoop(&Hoop<S>::cos_slope), hoop.rho = of_hoop(&Hoop<S>::rho);
   hoop.aloft = of_hoop(&Hoop<S>::aloft);
   const Flight<T> flights =
-      fly(hoop, LiftOff<T>{T(S(0)), of_state(&ContactState<S>::angle), of_state(&ContactState<S>::spin)});
+      fly(hoop, LiftOff<T>{T(S(0)), of_state(&ContactState<S>::angle), of_state(&ContactState<S>::spin)},
+          T(S(enough)));
   const auto height = lanes_of(flights.height), apex_time = lanes_of(flights.apex_time),
              flight_time = lanes_of(flights.flight_time), dip = lanes_of(flights.dip);
   for (std::size_t i = 0; i < count; ++i)

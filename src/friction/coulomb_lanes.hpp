@@ -13,6 +13,7 @@
 #include "friction/rolling_lanes.hpp"
 #include "friction/sliding_lanes.hpp"
 #include "numerics/wide.hpp"
+#include "trajectory/solver.hpp"
 
 namespace leapmap {
 
@@ -22,15 +23,17 @@ class CoulombLanes {
  public:
   using S = ScalarOf<T>;
 
-  /// tolerance: relative, of times; angles, spins and heights follow. timed: whether the time before a jump
-  /// is wanted; without it rolling takes none, jump_time and first_jump_time are NaN, and states have no
-  /// times; other numbers may differ in digits beyond the tolerance.
-  explicit CoulombLanes(double tolerance, bool timed = true)
-      : with_times_(timed),
-        rolling_(tolerance, most_on_their_way, timed),
+  /// tolerance: relative, of times; angles, spins and heights follow. Without the times before jumps rolling
+  /// takes none, jump_time and first_jump_time are NaN, and states have no times; other numbers may differ in
+  /// digits beyond the tolerance.
+  explicit CoulombLanes(double tolerance, const Wanted& wanted = {})
+      : with_times_(wanted.first_jump_time || wanted.jump_time),
+        followed_(wanted.descent || wanted.landing ? Followed::to_landing : Followed::to_lift_off),
+        rolling_(tolerance, most_on_their_way, with_times_),
         sliding_(tolerance, most_on_their_way) {}
 
-  /// Solves designs[i] into outcomes[i].
+  /// Solves designs[i] into outcomes[i]. If neither descent nor landing is wanted, flight_time, dip and all
+  /// measures of the landing are NaN.
   void solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes);
   /// The same from where states[i] have designs[i], which have just landed there or are released; moves each
   /// to just after the landing of its jump, and goes on from there if goes_on is set and says so.
@@ -49,12 +52,15 @@ class CoulombLanes {
     std::uint32_t place;
     Flight<S> flight;
   };
+  void run(Start start, std::span<const Design> designs, std::span<ContactState<S>> states,
+           const Scene& scene, std::span<Outcome> outcomes, Followed followed, const GoesOn& goes_on);
   void look_at_pivots(std::span<const Design> designs, const Scene& scene);
   void go_on(std::uint32_t place, NextPhase next);
-  /// Lets some of flying_ fly, and adds them to flown_.
-  void fly_some();
+  /// Lets some of flying_ fly, and adds them to flown_. enough: as of fly().
+  void fly_some(double enough);
 
   bool with_times_;
+  Followed followed_;
   RollingLanes<T> rolling_;
   SlidingLanes<T> sliding_;
   std::vector<OnItsWay> on_their_way_ = std::vector<OnItsWay>(most_on_their_way);

@@ -14,9 +14,8 @@ namespace leapmap::friction {
 
 namespace {
 
-/// Everything but the times of rolling comes with the phases, wanted or not.
 std::shared_ptr<CoulombLanes<Batch>> lanes_for(double tolerance, const Wanted& wanted) {
-  return std::make_shared<CoulombLanes<Batch>>(tolerance, wanted.first_jump_time || wanted.jump_time);
+  return std::make_shared<CoulombLanes<Batch>>(tolerance, wanted);
 }
 
 }  // namespace

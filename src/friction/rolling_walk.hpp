@@ -78,15 +78,16 @@ class LegView {
   LegView(const Roll<S>& roll, const Roll<S>& begin, const S& mu_static)
       : roll_(roll), begin_(begin), mu_static_(mu_static) {}
 
-  Look<S> at(const S& angle) const {
-    const Trig<S> phi = trig(angle);
+  Look<S> at(const S& angle) const { return at(angle, trig(angle)); }
+  /// phi: trig(angle).
+  Look<S> at(const S& angle, const Trig<S>& phi) const {
     const S E = vis_viva(roll_, angle, phi);
     return {angle, {E, S(2) * torque(roll_.hoop, phi)}, stick_guards(roll_.hoop, phi, E, mu_static_)};
   }
 
   /// From rest E's first zero is the beginning itself, known by its push.
   Look<S> at_begin() const {
-    Look<S> look = at(begin_.release);
+    Look<S> look = at(begin_.release, begin_.release_trig);
     look.vis_viva = {begin_.released, S(2) * begin_.push};
     return look;
   }

@@ -275,9 +275,10 @@ Flight<T> scaled(const Flight<T>& toss, const Hoop<T>& hoop, const T& spin) {
   return {toss.height * diameters, toss.apex_time * unit, toss.flight_time * unit, toss.dip * diameters};
 }
 
-/// The whole flight that starts at lift_off, of a hoop that no motor turns on.
+/// The whole flight that starts at lift_off, of a hoop that no motor turns on. enough: of one that gets as
+/// high as that [hoop diameters] the flight_time and dip are zero, as its landing is not looked for.
 template <class T>
-Flight<T> fly_undriven(const Hoop<T>& hoop, const LiftOff<T>& lift_off) {
+Flight<T> fly_undriven(const Hoop<T>& hoop, const LiftOff<T>& lift_off, const T& enough = T(HUGE_VAL)) {
   using std::abs;
   // y depends on phi and w only through cos(phi + w t) and sin(phi) w: turning backwards is the mirror image.
   const T angle = select(lift_off.spin < T(0), -lift_off.angle, lift_off.angle);
@@ -285,19 +286,26 @@ Flight<T> fly_undriven(const Hoop<T>& hoop, const LiftOff<T>& lift_off) {
   const Ascent<T> ascent = ascend(toss, MaskOf<T>(true));
   const MaskOf<T> flies = ascent.height > T(0);
   if (!any(flies)) return {};
-  const Flight<T> flight = scaled(descend(toss, ascent, flies), hoop, lift_off.spin);
+  const MaskOf<T> descends = flies & !(ascent.height * (T(0.5) * hoop.rho) >= enough);
+  Flight<T> flown{ascent.height, ascent.apex};
+  if (any(descends)) {
+    const Flight<T> whole = descend(toss, ascent, descends);
+    flown.flight_time = select(descends, whole.flight_time, T(0));
+    flown.dip = select(descends, whole.dip, T(0));
+  }
+  const Flight<T> flight = scaled(flown, hoop, lift_off.spin);
   const auto of_flying = [&](const T& value) { return select(flies, value, T(0)); };
   return {of_flying(flight.height), of_flying(flight.apex_time), of_flying(flight.flight_time),
           of_flying(flight.dip)};
 }
 
-/// The whole flight that starts at lift_off.
+/// The same of any hoop. With a motor flight_time and dip are there, whatever is enough.
 template <class T>
-Flight<T> fly(const Hoop<T>& hoop, const LiftOff<T>& lift_off) {
+Flight<T> fly(const Hoop<T>& hoop, const LiftOff<T>& lift_off, const T& enough = T(HUGE_VAL)) {
   const MaskOf<T> driven = hoop.aloft != T(0);
-  if (!any(driven)) return fly_undriven(hoop, lift_off);
+  if (!any(driven)) return fly_undriven(hoop, lift_off, enough);
   const Flight<T> flight = fly_driven(hoop, lift_off.angle, lift_off.spin, T(0), driven).flight;
-  return all(driven) ? flight : of_either(driven, flight, fly_undriven(hoop, lift_off));
+  return all(driven) ? flight : of_either(driven, flight, fly_undriven(hoop, lift_off, enough));
 }
 
 /// The whole flight of a rebound, which leaves with normal velocity v_n > 0. Where gravity wins over the
