@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <numeric>
+#include <type_traits>
 
 namespace leapmap {
 
@@ -28,15 +31,10 @@ void RollingLanes<T>::pass(std::vector<EndedPhase<S>>& ended) {
 
 template <class T>
 void RollingLanes<T>::find_ends(std::vector<EndedPhase<S>>& ended) {
-  bracketed_.clear();
-  while (!waiting_.empty() && bracketed_.size() < width) {
-    if (!bracket(waiting_.back(), bracketed_.emplace_back())) {
-      bracketed_.pop_back();
-      alone(waiting_.back(), ended);
-    }
-    waiting_.pop_back();
-  }
-  if (!bracketed_.empty()) polish_ends(ended);
+  const Begun begun = take();
+  std::array<Bracket, width> brackets;
+  for (std::uint32_t i = 0; i < width; ++i) brackets[i] = i < begun.count ? bracket(i) : brackets[0];
+  polish_ends(begun, brackets, ended);
 }
 
 template <class T>
@@ -47,22 +45,77 @@ void RollingLanes<T>::alone(std::uint32_t place, std::vector<EndedPhase<S>>& end
   ended.push_back({place, end, at});
 }
 
+template <class T>
+auto RollingLanes<T>::take() -> Begun {
+  static_assert(std::is_standard_layout_v<Phase> && offsetof(Phase, mu_static) == 10 * sizeof(S) &&
+                offsetof(Phase, runway) == 18 * sizeof(S));
+  using std::abs;
+  Begun begun;
+  begun.count = std::min(width, waiting_.size());
+  const std::size_t first = waiting_.size() - begun.count;
+  for (std::size_t i = 0; i < width; ++i) begun.place[i] = waiting_[first + (i < begun.count ? i : 0)];
+  waiting_.resize(first);
+  const auto numbers_from = [&](std::size_t number) {
+    return columns_of<T>([&](std::size_t i) { return &phases_[begun.place[i]].hoop.sin_slope + number; });
+  };
+  const auto [sin_slope, cos_slope, rho, clearance, Ic, J_min, drive, thrust] = numbers_from(0);
+  const auto [resistance, aloft, mu_static, time, travel, angle, spin, slip] = numbers_from(8);
+  const T runway = gathered<T>([&](std::size_t i) { return phases_[begun.place[i]].runway; });
+  const T zero(S(0)), one(S(1));
+  const Hoop<T> hoop{sin_slope, cos_slope, rho, clearance, Ic, J_min, drive, thrust, resistance};
+  const Trig<T> phi = trig(angle);
+  const T sets_out = setting_out(hoop, angle, phi, spin);
+  const T way = select(sets_out < zero, -one, one);
+  const Roll<T> roll = begin_roll(seen(hoop, way), T(way * angle), seen(phi, way), T(abs(spin)));
+  const auto [at, vis_viva, guards] = LegView<T>(roll, roll, mu_static).at_begin();
+  // Where nothing sets it going its runway ends at once.
+  const T last = select(sets_out == zero, roll.release, roll.release + (runway - way * travel));
+  std::array<std::uint32_t, width> lanes;
+  std::iota(lanes.begin(), lanes.end(), 0u);
+  begun_.template store<T>({roll.hoop.sin_slope,
+                            roll.hoop.cos_slope,
+                            roll.hoop.rho,
+                            roll.hoop.clearance,
+                            roll.hoop.Ic,
+                            roll.hoop.J_min,
+                            roll.hoop.drive,
+                            roll.hoop.thrust,
+                            roll.hoop.resistance,
+                            roll.release,
+                            roll.release_trig.sin,
+                            roll.release_trig.cos,
+                            roll.release_trig.versine,
+                            roll.released,
+                            roll.level,
+                            roll.push,
+                            mu_static,
+                            vis_viva.value,
+                            vis_viva.rate,
+                            guards.downhill.value,
+                            guards.downhill.rate,
+                            guards.uphill.value,
+                            guards.uphill.rate,
+                            last},
+                           lanes.data(), width);
+  begun.way = way, begun.mu_static = mu_static, begun.travel = travel, begun.roll = roll;
+  return begun;
+}
+
 /// Where one guard alone falls through zero between two looks, or none up to the runway's end.
 template <class T>
-bool RollingLanes<T>::bracket(std::uint32_t place, Bracketed& found) const {
-  const Phase& phase = phases_[place];
-  const Trig<S> phi = trig(phase.at.angle);
-  const S sets_out = setting_out(phase.hoop, phase.at.angle, phi, phase.at.spin);
-  if (sets_out == S(0)) return false;
-  found.place = place;
-  found.way = sets_out < S(0) ? S(-1) : S(1);
-  found.roll = begin_roll(seen(phase.hoop, found.way), S(found.way * phase.at.angle), seen(phi, found.way),
-                          std::abs(phase.at.spin));
-  const S last = found.roll.release + (phase.runway - found.way * phase.at.travel);
-  found.end = PhaseEnd::runway_ends;
-  found.from = found.to = last, found.from_value = S(1), found.to_value = S(-1);
+auto RollingLanes<T>::bracket(std::uint32_t lane) const -> Bracket {
+  const std::array<S, 24> n = begun_.template load<S>(&lane);
+  const Roll<S> roll{.hoop = {n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8]},
+                     .release = n[9],
+                     .release_trig = {n[10], n[11], n[12]},
+                     .released = n[13],
+                     .level = n[14],
+                     .push = n[15]};
+  const Look<S> at_begin{roll.release, {n[17], n[18]}, {{n[19], n[20]}, {n[21], n[22]}}};
+  const S last = n[23];
+  Bracket found{PhaseEnd::runway_ends, last, last, S(1), S(-1)};
   bool is_plain = true;
-  walk_.run({found.roll, found.roll, phase.mu_static}, last, [&](const Look<S>& left, const Look<S>& right) {
+  walk_.run({roll, roll, n[16]}, at_begin, last, [&](const Look<S>& left, const Look<S>& right) {
     const S apart = right.angle - left.angle;
     const auto stays = [&](const Sample<S>& a, const Sample<S>& b) {
       return !has_fallen(a) && !has_fallen(b) && stays_above(a, b, apart);
@@ -74,33 +127,26 @@ bool RollingLanes<T>::bracket(std::uint32_t place, Bracketed& found) const {
     const auto& [a, b] = holds_uphill ? std::pair{left.guards.downhill, right.guards.downhill}
                                       : std::pair{left.guards.uphill, right.guards.uphill};
     is_plain = spins && holds_downhill != holds_uphill && a.value > S(0) && b.value < S(0);
-    found.end = holds_uphill ? PhaseEnd::slips_backwards : PhaseEnd::slips_forwards;
-    found.from = left.angle, found.to = right.angle, found.from_value = a.value, found.to_value = b.value;
+    found = {holds_uphill ? PhaseEnd::slips_backwards : PhaseEnd::slips_forwards, left.angle, right.angle,
+             a.value, b.value};
     return true;
   });
-  return is_plain;
+  if (!is_plain) found.from = found.to = roll.release;
+  return found;
 }
 
 template <class T>
-void RollingLanes<T>::polish_ends(std::vector<EndedPhase<S>>& ended) {
+void RollingLanes<T>::polish_ends(const Begun& begun, const std::array<Bracket, width>& brackets,
+                                  std::vector<EndedPhase<S>>& ended) {
   using std::abs, std::sqrt;
-  const std::size_t count = bracketed_.size();
-  // Lanes to spare repeat the first.
-  const auto bracketed = [&](std::size_t i) -> const Bracketed& { return bracketed_[i < count ? i : 0]; };
-  const auto lanes = [&](const auto& number_of) {
-    return gathered<T>([&](std::size_t i) { return number_of(bracketed(i)); });
+  const auto of_bracket = [&](S Bracket::*member) {
+    return gathered<T>([&](std::size_t i) { return brackets[i].*member; });
   };
-  const auto of_bracket = [&](S Bracketed::*member) {
-    return lanes([&](const Bracketed& b) { return b.*member; });
-  };
-  const auto phase_of = [&](const Bracketed& b) -> const Phase& { return phases_[b.place]; };
-  const Roll<T> roll = gathered_roll<T>([&](std::size_t i) -> const Roll<S>& { return bracketed(i).roll; });
-  const T way = of_bracket(&Bracketed::way), from = of_bracket(&Bracketed::from),
-          to = of_bracket(&Bracketed::to), from_value = of_bracket(&Bracketed::from_value),
-          to_value = of_bracket(&Bracketed::to_value),
-          mu = lanes([&](const Bracketed&b) { return phase_of(b).mu_static; }),
-          travel = lanes([&](const Bracketed&b) { return phase_of(b).at.travel; }),
-          forwards = lanes([](const Bracketed&b) { return S(b.end == PhaseEnd::slips_forwards); });
+  const auto& [count, place, way, mu, travel, roll] = begun;
+  const T from = of_bracket(&Bracket::from), to = of_bracket(&Bracket::to),
+          from_value = of_bracket(&Bracket::from_value), to_value = of_bracket(&Bracket::to_value),
+          forwards =
+              gathered<T>([&](std::size_t i) { return S(brackets[i].end == PhaseEnd::slips_forwards); });
 
   const T zero(S(0));
   const MaskOf<T> is_forwards = forwards > zero, falls = from < to;
@@ -118,26 +164,22 @@ void RollingLanes<T>::polish_ends(std::vector<EndedPhase<S>>& ended) {
   const T spin =
       way * sqrt(larger(vis_viva_past_release(roll, x), zero) / contact_inertia(roll.hoop, trig(angle)));
 
-  // Where it slips at once there is no way to go.
+  // Where it slips at once, or is to be rolled by itself, there is no way to go.
   const unsigned moves = Lanes<T>::bits((x > zero) & (spin - spin == zero)) & ((1u << count) - 1u);
-  if (with_times_) {
-    typename TimedRolls<T>::Places places;
-    for (std::size_t i = 0; i < width; ++i) places[i] = bracketed(i).place;
-    timed_rolls_.begin(roll, x, places, moves);
-  }
-  const auto travels = lanes_of(travel + way * x), angles = lanes_of(way * angle), spins = lanes_of(spin);
+  if (with_times_) timed_rolls_.begin(roll, x, place, moves);
+  const auto travels = lanes_of(travel + way * x), angles = lanes_of(way * angle), spins = lanes_of(spin),
+             ways = lanes_of(way);
   for (std::size_t i = 0; i < count; ++i) {
-    const Bracketed& now = bracketed_[i];
     if (!(moves >> i & 1u)) {
-      alone(now.place, ended);
+      alone(place[i], ended);
       continue;
     }
-    const PhaseEnd end = now.way < S(0) ? turned_over(now.end) : now.end;
-    const ContactState<S> at{phase_of(now).at.time, travels[i], angles[i], spins[i]};
+    const PhaseEnd end = ways[i] < S(0) ? turned_over(brackets[i].end) : brackets[i].end;
+    const ContactState<S> at{phases_[place[i]].at.time, travels[i], angles[i], spins[i]};
     if (with_times_)
-      untimed_[now.place] = {end, at};
+      untimed_[place[i]] = {end, at};
     else
-      ended.push_back({now.place, end, at});
+      ended.push_back({place[i], end, at});
   }
 }
 

@@ -5,12 +5,14 @@
 /// time the panels resolve; any other is rolled by itself (friction/rolling_leg.hpp).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "friction/ended_phase.hpp"
 #include "friction/rolling_leg.hpp"
 #include "friction/timed_rolls.hpp"
+#include "numerics/rows.hpp"
 
 namespace leapmap {
 
@@ -39,13 +41,18 @@ class RollingLanes {
     ContactState<S> at;
     S runway;
   };
-  /// A phase whose end is known to lie between two angles, as seen on its leg.
-  struct Bracketed {
-    std::uint32_t place;
-    S way;
-    Roll<S> roll;
+  /// Some phases as they begin, seen on their legs. Lanes to spare repeat the first.
+  struct Begun {
+    std::size_t count;
+    typename TimedRolls<T>::Places place;
+    T way;  ///< 1 or -1
+    T mu_static, travel;
+    Roll<T> roll;
+  };
+  /// Between which angles a phase ends, on its leg.
+  struct Bracket {
     PhaseEnd end;
-    S from, to;  ///< the same where the end is there
+    S from, to;  ///< the same where the end is there; both at the beginning: it is to be rolled by itself
     S from_value, to_value;
   };
   /// A phase whose end is known, up to which it is to be timed.
@@ -53,12 +60,15 @@ class RollingLanes {
     PhaseEnd end;
     ContactState<S> at;  ///< there; its time is that of the phase's beginning
   };
-  bool bracket(std::uint32_t place, Bracketed& found) const;
+  Begun take();
+  /// The phase in a lane of those that take() has put into begun_.
+  Bracket bracket(std::uint32_t lane) const;
   void alone(std::uint32_t place, std::vector<EndedPhase<S>>& ended) const;
   /// Finds where some phases end that wait.
   void find_ends(std::vector<EndedPhase<S>>& ended);
-  /// To their last digits, of those in bracketed_.
-  void polish_ends(std::vector<EndedPhase<S>>& ended);
+  /// To their last digits.
+  void polish_ends(const Begun& begun, const std::array<Bracket, width>& brackets,
+                   std::vector<EndedPhase<S>>& ended);
   /// Times some phases a panel further.
   void time_some(std::vector<EndedPhase<S>>& ended);
 
@@ -68,7 +78,9 @@ class RollingLanes {
   TimedRolls<T> timed_rolls_;
   std::vector<Phase> phases_;           // by place
   std::vector<std::uint32_t> waiting_;  // places
-  std::vector<Bracketed> bracketed_;
+  /// Of the phases in the lanes: the roll's hoop, release, its sine, cosine and versine, vis viva, level and
+  /// push; mu_static; of the look there E, both guards and their rates; where the runway ends.
+  PackedRows<S, 24> begun_{width};
   std::vector<Untimed> untimed_;  // by place
   std::vector<typename TimedRolls<T>::Timed> timed_;
 };

@@ -61,7 +61,7 @@ LegEnd<S> RollingLeg<S>::first_end(const Roll<S>& roll, const Roll<S>& begin, co
                                    const S& last) const {
   const LegView<S> view(roll, begin, mu_static);
   LegEnd<S> end{PhaseEnd::runway_ends, last};
-  walk_.run(view, last, [&](const Look<S>& left, const Look<S>& right) {
+  walk_.run(view, view.at_begin(), last, [&](const Look<S>& left, const Look<S>& right) {
     const LegEnd<S> found = view.first_end(left, right);
     if (std::isnan(found.angle)) return false;
     end = found;

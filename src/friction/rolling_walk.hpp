@@ -133,15 +133,15 @@ class RollingWalk {
   }
 
   /// Calls ends(left, right) where the leg may end between two looks, until that returns true, or up to
-  /// `last`, which comes as a node of its own.
+  /// `last`, which comes as a node of its own. at_begin: the view's.
   template <class Ends>
-  void run(const LegView<S>& view, const S& last, const Ends& ends) const {
+  void run(const LegView<S>& view, const Look<S>& at_begin, const S& last, const Ends& ends) const {
     constexpr std::size_t width = Lanes<T>::count;
     constexpr long turn = nodes_a_turn;
     const S step = S(2) * std::numbers::pi_v<S> / S(nodes_a_turn);
     const Roll<T> rolls = widened<T>(view.roll());
     Looks<T> looks;
-    looks.put(0, view.at_begin());
+    looks.put(0, at_begin);
     for (long node = static_cast<long>(std::floor(view.begin().release / step)) + 1;; node += width) {
       const auto first = static_cast<std::size_t>((node % turn + turn) % turn);
       const Trig<T> phi{Lanes<T>::load(sin_.data() + first), Lanes<T>::load(cos_.data() + first),

@@ -103,26 +103,6 @@ Roll<T> widened(const Roll<ScalarOf<T>>& roll) {
           .push = T(roll.push)};
 }
 
-/// That of roll_of(i) in lane i.
-template <class T, class F>
-Roll<T> gathered_roll(const F& roll_of) {
-  using S = ScalarOf<T>;
-  const auto lanes = [&](const auto& number_of) {
-    return gathered<T>([&](std::size_t i) { return number_of(roll_of(i)); });
-  };
-  std::array<T, 9> hoop;
-  for (std::size_t k = 0; k < hoop.size(); ++k)
-    hoop[k] = lanes([&](const Roll<S>& roll) { return numbers_of(roll.hoop)[k]; });
-  return {.hoop = hoop_of(hoop),
-          .release = lanes([](const Roll<S>& roll) { return roll.release; }),
-          .release_trig = {lanes([](const Roll<S>& roll) { return roll.release_trig.sin; }),
-                           lanes([](const Roll<S>& roll) { return roll.release_trig.cos; }),
-                           lanes([](const Roll<S>& roll) { return roll.release_trig.versine; })},
-          .released = lanes([](const Roll<S>& roll) { return roll.released; }),
-          .level = lanes([](const Roll<S>& roll) { return roll.level; }),
-          .push = lanes([](const Roll<S>& roll) { return roll.push; })};
-}
-
 /// E at an angle, accurate to a few roundings of its largest term.
 template <class T>
 T vis_viva(const Roll<T>& roll, const T& angle, const Trig<T>& phi) {
