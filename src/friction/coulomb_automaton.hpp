@@ -27,8 +27,8 @@ inline int direction_of(NextPhase next) {
   return next == NextPhase::slides_forwards ? 1 : next == NextPhase::slides_backwards ? -1 : 0;
 }
 
-/// How far a design is followed that jumps.
-enum class Followed { to_landing, to_lift_off };
+/// How far a design is followed that jumps; measured: what is in jump_measures.hpp is kept as well.
+enum class Followed { to_lift_off, to_landing, to_measured_landing };
 
 /// A contact at v != 0 slides; at v = 0 the forces of rolling decide.
 template <class S>
@@ -62,7 +62,8 @@ class PhaseMachine {
   /// from: the release, or a state just after a landing. Scene, observer and outcome have to outlive the
   /// machine.
   PhaseMachine(const Design& design, const ContactState<S>& from, const Scene& scene,
-               const CoulombObserver& observer, Outcome& outcome, Followed followed = Followed::to_landing)
+               const CoulombObserver& observer, Outcome& outcome,
+               Followed followed = Followed::to_measured_landing)
       : scene_(&scene),
         observer_(&observer),
         outcome_(&outcome),
@@ -143,7 +144,8 @@ class PhaseMachine {
     if (!jumps && !(std::abs(at_.travel) < runway_)) return ended_as(Status::no_jump);
     const Landing<S> landing = land(hoop_, trig(at_.angle), {at_.slip, at_.normal, at_.spin},
                                     contact_.mu_kinetic, contact_.restitution, contact_.rest_speed);
-    if (jumps) keep_measures(measures_of(hoop_, S(at_.travel - left_at), at_, landing), *outcome_);
+    if (jumps && followed_ == Followed::to_measured_landing)
+      keep_measures(measures_of(hoop_, S(at_.travel - left_at), at_, landing), *outcome_);
     at_.spin = landing.after.spin, at_.slip = landing.after.slip;
     at_.normal = landing.after.normal;
     if (!jumps && at_.spin * hoop_.resistance < S(0))

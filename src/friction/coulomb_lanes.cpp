@@ -20,7 +20,7 @@ void CoulombLanes<T>::solve(std::span<const Design> designs, const Scene& scene,
 template <class T>
 void CoulombLanes<T>::solve(Start start, std::span<const Design> designs, std::span<ContactState<S>> states,
                             const Scene& scene, std::span<Outcome> outcomes, const GoesOn& goes_on) {
-  run(start, designs, states, scene, outcomes, Followed::to_landing, goes_on);
+  run(start, designs, states, scene, outcomes, std::max(followed_, Followed::to_landing), goes_on);
 }
 
 template <class T>
@@ -28,7 +28,7 @@ void CoulombLanes<T>::run(Start start, std::span<const Design> designs, std::spa
                           const Scene& scene, std::span<Outcome> outcomes, Followed followed,
                           const GoesOn& goes_on) {
   const CoulombObserver no_observer;
-  const bool lands = followed == Followed::to_landing;
+  const bool lands = followed != Followed::to_lift_off;
   constexpr std::size_t width = Lanes<T>::count;
   look_at_pivots(designs, scene);
   // A call that ended by an exception leaves phases behind.
@@ -41,7 +41,8 @@ void CoulombLanes<T>::run(Start start, std::span<const Design> designs, std::spa
       const bool jumps = outcomes[design].status == Status::jumped;
       if (jumps) states[design] = machine->at();
       if (!with_times_) outcomes[design].jump_time = outcomes[design].first_jump_time = Outcome::none;
-      if (!lands) outcomes[design].flight_time = outcomes[design].dip = Outcome::none;
+      if (!lands) outcomes[design].flight_time = Outcome::none;
+      if (!with_dips_) outcomes[design].dip = Outcome::none;
       if (!jumps || !goes_on || !goes_on(design)) {
         machine.reset();
         return free_.push_back(place);
@@ -68,7 +69,7 @@ void CoulombLanes<T>::run(Start start, std::span<const Design> designs, std::spa
     }
     rebounding_.clear();
     if (flying_.size() >= width || sliding_.waiting() + rolling_.waiting() == 0)
-      fly_some(lands ? HUGE_VAL : scene.hop_height);
+      fly_some({T(S(lands ? HUGE_VAL : scene.hop_height)), with_dips_});
     else if (sliding_.waiting() >= width || rolling_.waiting() == 0)
       sliding_.pass(ended_);
     else
@@ -118,7 +119,7 @@ void CoulombLanes<T>::go_on(std::uint32_t place, NextPhase next) {
 }
 
 template <class T>
-void CoulombLanes<T>::fly_some(double enough) {
+void CoulombLanes<T>::fly_some(const FlightAsked<T>& asked) {
   constexpr std::size_t width = Lanes<T>::count;
   const std::size_t count = std::min(width, flying_.size()), first = flying_.size() - count;
   if (count == 0) return;
@@ -134,9 +135,8 @@ void CoulombLanes<T>::fly_some(double enough) {
   Hoop<T> hoop{};  // of which a flight takes these
   hoop.cos_slope = of_hoop(&Hoop<S>::cos_slope), hoop.rho = of_hoop(&Hoop<S>::rho);
   hoop.aloft = of_hoop(&Hoop<S>::aloft);
-  const Flight<T> flights =
-      fly(hoop, LiftOff<T>{T(S(0)), of_state(&ContactState<S>::angle), of_state(&ContactState<S>::spin)},
-          T(S(enough)));
+  const Flight<T> flights = fly(
+      hoop, LiftOff<T>{T(S(0)), of_state(&ContactState<S>::angle), of_state(&ContactState<S>::spin)}, asked);
   const auto height = lanes_of(flights.height), apex_time = lanes_of(flights.apex_time),
              flight_time = lanes_of(flights.flight_time), dip = lanes_of(flights.dip);
   for (std::size_t i = 0; i < count; ++i)

@@ -28,15 +28,19 @@ class CoulombLanes {
   /// digits beyond the tolerance.
   explicit CoulombLanes(double tolerance, const Wanted& wanted = {})
       : with_times_(wanted.first_jump_time || wanted.jump_time),
-        followed_(wanted.descent || wanted.landing ? Followed::to_landing : Followed::to_lift_off),
+        with_dips_(wanted.descent),
+        followed_(wanted.landing   ? Followed::to_measured_landing
+                  : wanted.descent ? Followed::to_landing
+                                   : Followed::to_lift_off),
         rolling_(tolerance, most_on_their_way, with_times_),
         sliding_(tolerance, most_on_their_way) {}
 
-  /// Solves designs[i] into outcomes[i]. If neither descent nor landing is wanted, flight_time, dip and all
-  /// measures of the landing are NaN.
+  /// Solves designs[i] into outcomes[i]. Without the landing its measures are NaN, without the descent dip
+  /// is, and without both flight_time and landing_spin are, too.
   void solve(std::span<const Design> designs, const Scene& scene, std::span<Outcome> outcomes);
   /// The same from where states[i] have designs[i], which have just landed there or are released; moves each
-  /// to just after the landing of its jump, and goes on from there if goes_on is set and says so.
+  /// to just after the landing of its jump, and goes on from there if goes_on is set and says so. flight_time
+  /// and landing_spin are there in any case.
   void solve(Start start, std::span<const Design> designs, std::span<ContactState<S>> states,
              const Scene& scene, std::span<Outcome> outcomes, const GoesOn& goes_on = {});
 
@@ -56,10 +60,10 @@ class CoulombLanes {
            const Scene& scene, std::span<Outcome> outcomes, Followed followed, const GoesOn& goes_on);
   void look_at_pivots(std::span<const Design> designs, const Scene& scene);
   void go_on(std::uint32_t place, NextPhase next);
-  /// Lets some of flying_ fly, and adds them to flown_. enough: as of fly().
-  void fly_some(double enough);
+  /// Lets some of flying_ fly, and adds them to flown_.
+  void fly_some(const FlightAsked<T>& asked);
 
-  bool with_times_;
+  bool with_times_, with_dips_;
   Followed followed_;
   RollingLanes<T> rolling_;
   SlidingLanes<T> sliding_;

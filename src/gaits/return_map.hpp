@@ -55,9 +55,9 @@ struct Orbit {
 bool go_once_round(const JumpSolver<double>& jumps, const Scene& scene, const Design& design, int period,
                    const Landed& start, Orbit& orbit, double near = 1e-8);
 
-/// Of a jump its flight, and no time before it.
+/// Of a jump its flight, and no time before it. Who follows states is given the flight_time in any case.
 inline constexpr Wanted untimed{
-    .first_jump_time = false, .jump_time = false, .descent = true, .landing = false};
+    .first_jump_time = false, .jump_time = false, .descent = false, .landing = false};
 
 /// How designs go on from one landing to the next, each jump alone.
 struct JumpSolvers {

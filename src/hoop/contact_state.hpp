@@ -23,8 +23,9 @@ struct ContactState {
 /// A state without whole turns, time and travel, on which nothing depends that comes after it.
 template <class S>
 ContactState<S> reduced(const ContactState<S>& at) {
-  using std::remainder;
-  return {.angle = remainder(at.angle, S(2) * std::numbers::pi_v<S>),
+  using std::fma, std::nearbyint;
+  constexpr S turn = S(2) * std::numbers::pi_v<S>;
+  return {.angle = fma(-nearbyint(at.angle / turn), turn, at.angle),  // std::remainder, in less time
           .spin = at.spin,
           .slip = at.slip,
           .normal = at.normal};

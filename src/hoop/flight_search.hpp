@@ -244,16 +244,17 @@ Ascent<T> ascend(const Toss<T>& toss, const MaskOf<T>& wanted) {
 }
 
 /// The rest of a flight, psi in place of times and heights of rho; zero where it never clears the plane.
-/// Lanes outside `wanted` return anything.
+/// Lanes outside `wanted` return anything. finds_dip: otherwise it is anything, too.
 template <class T>
-Flight<T> descend(const Toss<T>& toss, const Ascent<T>& ascent, const MaskOf<T>& wanted) {
+Flight<T> descend(const Toss<T>& toss, const Ascent<T>& ascent, const MaskOf<T>& wanted,
+                  bool finds_dip = true) {
   using std::sqrt;
   const T pi(std::numbers::pi_v<ScalarOf<T>>), epsilon(std::numeric_limits<ScalarOf<T>>::epsilon());
   const MaskOf<T> flies = wanted & (ascent.apex > T(0));
   const MaskOf<T> often = toss_detail::climbs_often(toss), seldom = flies & !often;
   T dip = select(flies, ascent.dip, T(0));
   const MaskOf<T> dips = seldom & (toss.top > T(2) * (pi - toss.opening));
-  if (any(dips)) {
+  if (finds_dip && any(dips)) {
     const T lowest = toss_height(toss, toss_detail::bottom(toss, toss.top, dips)).value;
     dip = select(dips, smaller(dip, lowest), dip);
   }
@@ -275,10 +276,16 @@ Flight<T> scaled(const Flight<T>& toss, const Hoop<T>& hoop, const T& spin) {
   return {toss.height * diameters, toss.apex_time * unit, toss.flight_time * unit, toss.dip * diameters};
 }
 
-/// The whole flight that starts at lift_off, of a hoop that no motor turns on. enough: of one that gets as
-/// high as that [hoop diameters] the flight_time and dip are zero, as its landing is not looked for.
+/// What is asked of a flight. What is not is anything.
 template <class T>
-Flight<T> fly_undriven(const Hoop<T>& hoop, const LiftOff<T>& lift_off, const T& enough = T(HUGE_VAL)) {
+struct FlightAsked {
+  T lands_below = T(HUGE_VAL);  ///< its landing and dip if it gets no higher than that [hoop diameters]
+  bool dip = true;
+};
+
+/// The flight that starts at lift_off, of a hoop that no motor turns on.
+template <class T>
+Flight<T> fly_undriven(const Hoop<T>& hoop, const LiftOff<T>& lift_off, const FlightAsked<T>& asked = {}) {
   using std::abs;
   // y depends on phi and w only through cos(phi + w t) and sin(phi) w: turning backwards is the mirror image.
   const T angle = select(lift_off.spin < T(0), -lift_off.angle, lift_off.angle);
@@ -286,26 +293,22 @@ Flight<T> fly_undriven(const Hoop<T>& hoop, const LiftOff<T>& lift_off, const T&
   const Ascent<T> ascent = ascend(toss, MaskOf<T>(true));
   const MaskOf<T> flies = ascent.height > T(0);
   if (!any(flies)) return {};
-  const MaskOf<T> descends = flies & !(ascent.height * (T(0.5) * hoop.rho) >= enough);
+  const MaskOf<T> descends = flies & !(ascent.height * (T(0.5) * hoop.rho) >= asked.lands_below);
   Flight<T> flown{ascent.height, ascent.apex};
-  if (any(descends)) {
-    const Flight<T> whole = descend(toss, ascent, descends);
-    flown.flight_time = select(descends, whole.flight_time, T(0));
-    flown.dip = select(descends, whole.dip, T(0));
-  }
+  if (any(descends)) flown = descend(toss, ascent, descends, asked.dip);
   const Flight<T> flight = scaled(flown, hoop, lift_off.spin);
   const auto of_flying = [&](const T& value) { return select(flies, value, T(0)); };
   return {of_flying(flight.height), of_flying(flight.apex_time), of_flying(flight.flight_time),
           of_flying(flight.dip)};
 }
 
-/// The same of any hoop. With a motor flight_time and dip are there, whatever is enough.
+/// The same of any hoop.
 template <class T>
-Flight<T> fly(const Hoop<T>& hoop, const LiftOff<T>& lift_off, const T& enough = T(HUGE_VAL)) {
+Flight<T> fly(const Hoop<T>& hoop, const LiftOff<T>& lift_off, const FlightAsked<T>& asked = {}) {
   const MaskOf<T> driven = hoop.aloft != T(0);
-  if (!any(driven)) return fly_undriven(hoop, lift_off, enough);
+  if (!any(driven)) return fly_undriven(hoop, lift_off, asked);
   const Flight<T> flight = fly_driven(hoop, lift_off.angle, lift_off.spin, T(0), driven).flight;
-  return all(driven) ? flight : of_either(driven, flight, fly_undriven(hoop, lift_off, enough));
+  return all(driven) ? flight : of_either(driven, flight, fly_undriven(hoop, lift_off, asked));
 }
 
 /// The whole flight of a rebound, which leaves with normal velocity v_n > 0. Where gravity wins over the

@@ -162,26 +162,31 @@ TEST(CoulombLanes, WithoutTimesFindTheSameJumps) {
   }
 }
 
-TEST(CoulombLanes, WithoutLandingsFindTheSameJumps) {
+TEST(CoulombLanes, FindTheSameJumpsWhateverOfTheLandingIsWanted) {
   std::vector<Design> designs = designs_of_three_kinds(600);
   for (std::size_t i = 0; i < designs.size(); i += 3) designs[i].drive_torque = 0.01;
   for (std::size_t i = 0; i < designs.size(); i += 5) designs[i].restitution = 0.4;
   for (const double hop_height : {1e-3, 0.1}) {  // lift-offs below it land and go on
     const Scene scene{.friction = Friction::coulomb, .hop_height = hop_height};
-    std::vector<Outcome> whole(designs.size()), shorter(designs.size());
+    std::vector<Outcome> whole(designs.size()), shorter(designs.size()), measured(designs.size());
     CoulombLanes<Batch>(1e-9).solve(designs, scene, whole);
     CoulombLanes<Batch>(1e-9, {.descent = false, .landing = false}).solve(designs, scene, shorter);
+    CoulombLanes<Batch>(1e-9, {.descent = false}).solve(designs, scene, measured);
     int jumped = 0, after_others = 0;
     for (std::size_t i = 0; i < designs.size(); ++i) {
-      ASSERT_TRUE(same_flags(whole[i], shorter[i])) << i;
+      ASSERT_TRUE(same_flags(whole[i], shorter[i]) && same_flags(whole[i], measured[i])) << i;
       EXPECT_TRUE(std::isnan(shorter[i].flight_time) && std::isnan(shorter[i].dip)) << i;
       EXPECT_TRUE(std::isnan(shorter[i].landing_impulse) && std::isnan(shorter[i].landing_spin)) << i;
+      EXPECT_TRUE(std::isnan(measured[i].dip)) << i;
       if (whole[i].status != Status::jumped) continue;
       ++jumped, after_others += whole[i].candidates > 1;
       for (double Outcome::*const number :
            {&Outcome::jump_height, &Outcome::jump_time, &Outcome::jump_angle, &Outcome::jump_spin,
             &Outcome::jump_distance, &Outcome::apex_time, &Outcome::energy_lost, &Outcome::slip_distance})
         EXPECT_EQ(shorter[i].*number, whole[i].*number) << i;
+      for (double Outcome::*const number :
+           {&Outcome::jump_height, &Outcome::flight_time, &Outcome::landing_impulse, &Outcome::landing_spin})
+        EXPECT_EQ(measured[i].*number, whole[i].*number) << i;
     }
     EXPECT_GT(jumped, 100) << hop_height;
     EXPECT_GT(after_others, 10) << hop_height;
