@@ -20,8 +20,9 @@ namespace leapmap {
 
 /// Holds at most `most_bytes` of items that wait for their turn or for the taker; a thread that brings more
 /// waits, so that memory stays bounded when one item, or whoever takes them, is slow. Items must be begun in
-/// order for that wait to end. The taker looks for what is due every few milliseconds: a call for each item
-/// costs more than small ones take. A single item needs no thread of its own: whoever finishes takes it.
+/// order for that wait to end. The taker looks every few milliseconds for what is due: waking it for each
+/// item would cost more than a small item takes. A single item needs no thread of its own: whoever finishes
+/// takes it.
 template <class Item>
 class OrderedDelivery {
  public:
@@ -40,11 +41,11 @@ class OrderedDelivery {
   bool bring(std::size_t number, Item item, std::size_t bytes) {
     std::unique_lock lock(mutex_);
     const auto refused = [&] { return state_ != State::open || number >= end_; };
-    const auto may_go_on = [&] { return refused() || number == next_ || bytes_ + bytes <= most_bytes_; };
-    if (!may_go_on()) {
+    const auto may_bring = [&] { return refused() || number == next_ || bytes_ + bytes <= most_bytes_; };
+    if (!may_bring()) {
       ++held_up_;
       changed_.notify_all();
-      changed_.wait(lock, may_go_on);
+      changed_.wait(lock, may_bring);
       --held_up_;
     }
     if (refused()) return false;

@@ -380,10 +380,8 @@ GradientSolver friction::gradients(const Scene& scene, double tolerance, const W
                                    const GradientWanted&) {
   Scene to_first = scene;
   to_first.jumps = 1;
-  Wanted whole = wanted;  // derivatives are of landings, too, asked for or not
-  whole.descent = whole.landing = true;
   const GradientSolver first =
-      [solver = std::make_shared<CoulombGradients>(tolerance), plain = exact(to_first, tolerance, whole),
+      [solver = std::make_shared<CoulombGradients>(tolerance), plain = exact(to_first, tolerance, wanted),
        scene](std::span<const Design> designs, std::span<Outcome> outcomes, Gradients& gradients) {
         plain(designs, outcomes);
         solver->derive_solved(designs, scene, outcomes, gradients);

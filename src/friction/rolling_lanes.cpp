@@ -47,8 +47,11 @@ void RollingLanes<T>::alone(std::uint32_t place, std::vector<EndedPhase<S>>& end
 
 template <class T>
 auto RollingLanes<T>::take() -> Begun {
-  static_assert(std::is_standard_layout_v<Phase> && offsetof(Phase, mu_static) == 10 * sizeof(S) &&
-                offsetof(Phase, runway) == 18 * sizeof(S));
+  static_assert(std::is_standard_layout_v<Phase> && offsetof(Hoop<S>, thrust) == 7 * sizeof(S) &&
+                offsetof(Hoop<S>, aloft) == 9 * sizeof(S) && offsetof(Phase, mu_static) == 10 * sizeof(S) &&
+                offsetof(ContactState<S>, travel) == sizeof(S) &&
+                offsetof(ContactState<S>, spin) == 3 * sizeof(S) &&
+                offsetof(ContactState<S>, slip) == 4 * sizeof(S));
   using std::abs;
   Begun begun;
   begun.count = std::min(width, waiting_.size());
@@ -72,31 +75,31 @@ auto RollingLanes<T>::take() -> Begun {
   const T last = select(sets_out == zero, roll.release, roll.release + (runway - way * travel));
   std::array<std::uint32_t, width> lanes;
   std::iota(lanes.begin(), lanes.end(), 0u);
-  begun_.template store<T>({roll.hoop.sin_slope,
-                            roll.hoop.cos_slope,
-                            roll.hoop.rho,
-                            roll.hoop.clearance,
-                            roll.hoop.Ic,
-                            roll.hoop.J_min,
-                            roll.hoop.drive,
-                            roll.hoop.thrust,
-                            roll.hoop.resistance,
-                            roll.release,
-                            roll.release_trig.sin,
-                            roll.release_trig.cos,
-                            roll.release_trig.versine,
-                            roll.released,
-                            roll.level,
-                            roll.push,
-                            mu_static,
-                            vis_viva.value,
-                            vis_viva.rate,
-                            guards.downhill.value,
-                            guards.downhill.rate,
-                            guards.uphill.value,
-                            guards.uphill.rate,
-                            last},
-                           lanes.data(), width);
+  legs_.template store<T>({roll.hoop.sin_slope,
+                           roll.hoop.cos_slope,
+                           roll.hoop.rho,
+                           roll.hoop.clearance,
+                           roll.hoop.Ic,
+                           roll.hoop.J_min,
+                           roll.hoop.drive,
+                           roll.hoop.thrust,
+                           roll.hoop.resistance,
+                           roll.release,
+                           roll.release_trig.sin,
+                           roll.release_trig.cos,
+                           roll.release_trig.versine,
+                           roll.released,
+                           roll.level,
+                           roll.push,
+                           mu_static,
+                           vis_viva.value,
+                           vis_viva.rate,
+                           guards.downhill.value,
+                           guards.downhill.rate,
+                           guards.uphill.value,
+                           guards.uphill.rate,
+                           last},
+                          lanes.data(), width);
   begun.way = way, begun.mu_static = mu_static, begun.travel = travel, begun.roll = roll;
   return begun;
 }
@@ -104,7 +107,7 @@ auto RollingLanes<T>::take() -> Begun {
 /// Where one guard alone falls through zero between two looks, or none up to the runway's end.
 template <class T>
 auto RollingLanes<T>::bracket(std::uint32_t lane) const -> Bracket {
-  const std::array<S, 24> n = begun_.template load<S>(&lane);
+  const std::array<S, 24> n = legs_.template load<S>(&lane);
   const Roll<S> roll{.hoop = {n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8]},
                      .release = n[9],
                      .release_trig = {n[10], n[11], n[12]},

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// The rolling phases of many designs, as many at once as there are lanes.
 ///
-/// A lane takes a phase that ends without turning round, at one place that its neighbours tell, and whose
-/// time the panels resolve; any other is rolled by itself (friction/rolling_leg.hpp).
+/// In lanes a phase comes to its end if it does not turn round, if neighbouring angles show one place where
+/// it may end, and if the panels resolve its time. Any other is rolled by itself (friction/rolling_leg.hpp).
 #pragma once
 
 #include <array>
@@ -61,7 +61,7 @@ class RollingLanes {
     ContactState<S> at;  ///< there; its time is that of the phase's beginning
   };
   Begun take();
-  /// The phase in a lane of those that take() has put into begun_.
+  /// The phase in a lane of those that take() has put into legs_.
   Bracket bracket(std::uint32_t lane) const;
   void alone(std::uint32_t place, std::vector<EndedPhase<S>>& ended) const;
   /// Finds where some phases end that wait.
@@ -80,7 +80,7 @@ class RollingLanes {
   std::vector<std::uint32_t> waiting_;  // places
   /// Of the phases in the lanes: the roll's hoop, release, its sine, cosine and versine, vis viva, level and
   /// push; mu_static; of the look there E, both guards and their rates; where the runway ends.
-  PackedRows<S, 24> begun_{width};
+  PackedRows<S, 24> legs_{width};
   std::vector<Untimed> untimed_;  // by place
   std::vector<typename TimedRolls<T>::Timed> timed_;
 };

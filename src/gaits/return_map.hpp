@@ -55,7 +55,7 @@ struct Orbit {
 bool go_once_round(const JumpSolver<double>& jumps, const Scene& scene, const Design& design, int period,
                    const Landed& start, Orbit& orbit, double near = 1e-8);
 
-/// Of a jump its flight, and no time before it. Who follows states is given the flight_time in any case.
+/// Of jumps from state to state: neither times nor measures.
 inline constexpr Wanted untimed{
     .first_jump_time = false, .jump_time = false, .descent = false, .landing = false};
 

@@ -25,7 +25,8 @@ template <class S>
 ContactState<S> reduced(const ContactState<S>& at) {
   using std::fma, std::nearbyint;
   constexpr S turn = S(2) * std::numbers::pi_v<S>;
-  return {.angle = fma(-nearbyint(at.angle / turn), turn, at.angle),  // std::remainder, in less time
+  // As std::remainder, but for angles within a rounding of half a turn, and in less time.
+  return {.angle = fma(-nearbyint(at.angle / turn), turn, at.angle),
           .spin = at.spin,
           .slip = at.slip,
           .normal = at.normal};

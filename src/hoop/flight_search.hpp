@@ -244,7 +244,7 @@ Ascent<T> ascend(const Toss<T>& toss, const MaskOf<T>& wanted) {
 }
 
 /// The rest of a flight, psi in place of times and heights of rho; zero where it never clears the plane.
-/// Lanes outside `wanted` return anything. finds_dip: otherwise it is anything, too.
+/// Lanes outside `wanted` return anything, and without finds_dip so does the dip of all.
 template <class T>
 Flight<T> descend(const Toss<T>& toss, const Ascent<T>& ascent, const MaskOf<T>& wanted,
                   bool finds_dip = true) {
@@ -276,10 +276,10 @@ Flight<T> scaled(const Flight<T>& toss, const Hoop<T>& hoop, const T& spin) {
   return {toss.height * diameters, toss.apex_time * unit, toss.flight_time * unit, toss.dip * diameters};
 }
 
-/// What is asked of a flight. What is not is anything.
+/// What is asked of a flight. Numbers that are not asked for are anything.
 template <class T>
 struct FlightAsked {
-  T lands_below = T(HUGE_VAL);  ///< its landing and dip if it gets no higher than that [hoop diameters]
+  T lands_below = T(HUGE_VAL);  ///< flights that stay below this height land [hoop diameters]
   bool dip = true;
 };
 

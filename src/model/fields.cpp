@@ -109,8 +109,9 @@ const std::array fields{
         "distance slid from release to the lift-off of the jump, or without a jump to the end of the motion, "
         "in R; NaN if the hoop rocks to rest",
         3, Friction::coulomb},
-    Field{"landing_spin", Quantity{&Outcome::landing_spin}, "1",
-          "spin after the landing of the jump, in sqrt(g/R)", 3, Friction::coulomb},
+    needing(&Wanted::descent,
+            Field{"landing_spin", Quantity{&Outcome::landing_spin}, "1",
+                  "spin after the landing of the jump, in sqrt(g/R)", 3, Friction::coulomb}),
     Field{"energy_lost", Quantity{&Outcome::energy_lost}, "1",
           "energy lost from release to the lift-off of the jump, in (m + m_p) g R", 3, Friction::coulomb},
     of_landing("jump_range", &Outcome::jump_range,

@@ -32,8 +32,9 @@ Tiling tiling_of(const Spec& spec) {
   if (proves) return Tiling(shape, some_cells);
   if (spec.scatter.spreads.empty() && !model_of(spec.scene).slips) return Tiling(shape);
   if (spec.scatter.spreads.empty()) {
-    // Some hoops take a hundred times as long as others: small enough that shards come out even. But one that
-    // jumps on and on fills a lane by itself, and the others stay empty unless more of its tile do the same.
+    // Some hoops take a hundred times as long as others: tiles are small enough that shards come out even.
+    // But a hoop that jumps on and on fills a lane by itself, and the others stay empty unless more of its
+    // tile do the same.
     const std::size_t designs = designs_of(shape), most = std::clamp<std::size_t>(designs / 192, 256, 2048);
     if (spec.scene.settle == 0) return Tiling(shape, most);
     return Tiling(shape, std::max<std::size_t>(most, 512), std::clamp<std::size_t>(designs / 8, 64, 512));

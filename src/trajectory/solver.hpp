@@ -27,7 +27,7 @@ Solver one_by_one(std::shared_ptr<One> one, const Scene& scene) {
 struct Wanted {
   bool first_jump_time = true;
   bool jump_time = true;
-  bool descent = true;  ///< flight_time and dip
+  bool descent = true;  ///< flight_time, dip and landing_spin
   bool landing = true;  ///< what is in jump_measures.hpp
 };
 

@@ -166,7 +166,7 @@ TEST(CoulombLanes, FindTheSameJumpsWhateverOfTheLandingIsWanted) {
   std::vector<Design> designs = designs_of_three_kinds(600);
   for (std::size_t i = 0; i < designs.size(); i += 3) designs[i].drive_torque = 0.01;
   for (std::size_t i = 0; i < designs.size(); i += 5) designs[i].restitution = 0.4;
-  for (const double hop_height : {1e-3, 0.1}) {  // lift-offs below it land and go on
+  for (const double hop_height : {1e-3, 0.1}) {  // hoops land from lift-offs below it
     const Scene scene{.friction = Friction::coulomb, .hop_height = hop_height};
     std::vector<Outcome> whole(designs.size()), shorter(designs.size()), measured(designs.size());
     CoulombLanes<Batch>(1e-9).solve(designs, scene, whole);

@@ -209,6 +209,42 @@ TEST(Flight, LanesFlyAsOneTossDoesThroughOneClimbOrMany) {
   EXPECT_GT(several, 500) << "tosses that climb more than once are among them";
 }
 
+TEST(Flight, LandsOnlyWhereThatIsAskedFor) {
+  std::mt19937_64 random(9);
+  constexpr std::size_t width = Lanes<Batch>::count;
+  const auto lanes_between = [&](double from, double to) {
+    LaneArray<Batch> numbers;
+    for (double& number : numbers) number = testing::uniform(random, from, to);
+    return Lanes<Batch>::load(numbers.data());
+  };
+  const Hoop<double> one = reduce<double>(Design{.slope = 0.3, .mass_ratio = 4.0, .offset_ratio = 0.9});
+  Hoop<Batch> hoop;
+  hoop.rho = Batch(one.rho), hoop.cos_slope = Batch(one.cos_slope), hoop.aloft = Batch(0.0);
+  int low = 0, high = 0;
+  for (int round = 0; round < 300; ++round) {
+    const LiftOff<Batch> lift_off{Batch(0.0), lanes_between(1.0, 4.0), lanes_between(0.5, 4.0)};
+    const Flight<Batch> whole = fly(hoop, lift_off);
+    const auto heights = lanes_of(whole.height), times = lanes_of(whole.flight_time),
+               dips = lanes_of(whole.dip);
+    const double threshold = heights[0];  // which a flight that gets as high does not stay below
+    const Flight<Batch> asked = fly(hoop, lift_off, {Batch(threshold), false}),
+                        dipping = fly(hoop, lift_off, {Batch(threshold), true});
+    const auto height = lanes_of(asked.height), time = lanes_of(asked.flight_time),
+               apex = lanes_of(asked.apex_time), whole_apex = lanes_of(whole.apex_time),
+               dip = lanes_of(dipping.dip);
+    for (std::size_t i = 0; i < width; ++i) {
+      EXPECT_EQ(height[i], heights[i]);
+      EXPECT_EQ(apex[i], whole_apex[i]);
+      (heights[i] < threshold ? low : high) += heights[i] > 0.0;
+      if (!(heights[i] < threshold)) continue;
+      EXPECT_EQ(time[i], times[i]);
+      EXPECT_EQ(dip[i], dips[i]);
+    }
+  }
+  EXPECT_GT(low, 100);
+  EXPECT_GT(high, 100);
+}
+
 TEST(Flight, BackwardSpinFliesTheMirrorImage) {
   const Hoop<double> hoop = reduce<double>(testing::paper_hoop());
   const Flight<double> forward = fly<double>(hoop, {0.0, 1.4, 2.3}),

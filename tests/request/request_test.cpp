@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "request/request.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
+#include "request/solver.hpp"
 #include "spec/spec.hpp"
 
 namespace leapmap {
@@ -47,6 +50,29 @@ TEST(Request, FollowsNoMoreJumpsThanItsColumnsNeed) {
   EXPECT_EQ(scene_asked(followed("jump_height_3_by_slope")).jumps, 5);
   EXPECT_EQ(scene_followed(followed("jump_height")).jumps, 1);
   EXPECT_EQ(scene_followed(followed("gait_height")).jumps, 40);
+}
+
+TEST(Request, HasEachColumnAsAmongAllOthers) {
+  for (const char* friction : {"sticking", "coulomb"}) {
+    const Spec spec = read_spec("", {fmt::format("scene.friction={}", friction), "clear_height=0.1",
+                                     "slope=0.3", "mass_ratio=3", "offset_ratio=0.8"});
+    const auto solved = [&](const std::vector<const Field*>& columns) {
+      Outcome outcome;
+      make_solver(request_of(spec, columns))({&spec.design, 1}, {&outcome, 1});
+      return outcome;
+    };
+    const std::vector<const Field*> fields = fields_of(spec.scene);
+    const Outcome all = solved(fields);
+    ASSERT_EQ(all.status, Status::jumped);
+    for (const Field* field : fields) {
+      if (std::holds_alternative<Word>(field->source)) continue;
+      const double among_all = stored_number(*field, all), alone = stored_number(*field, solved({field}));
+      EXPECT_EQ(std::isnan(alone), std::isnan(among_all)) << field->name << ", " << friction;
+      if (std::isnan(among_all)) continue;
+      // Times may be known to more digits where others are asked for: all are good to 1e-9.
+      EXPECT_NEAR(alone, among_all, 1e-8 * (1.0 + std::abs(among_all))) << field->name << ", " << friction;
+    }
+  }
 }
 
 TEST(Request, AsksOfASampleWhatItsGoalsAndStatisticsNeed) {
