@@ -145,7 +145,10 @@ void RollingLanes<T>::polish_ends(const Begun& begun, const std::array<Bracket, 
   const auto of_bracket = [&](S Bracket::*member) {
     return gathered<T>([&](std::size_t i) { return brackets[i].*member; });
   };
-  const auto& [count, place, way, mu, travel, roll] = begun;
+  const std::size_t count = begun.count;
+  const typename TimedRolls<T>::Places& place = begun.place;
+  const T &way = begun.way, &mu = begun.mu_static, &travel = begun.travel;
+  const Roll<T>& roll = begun.roll;
   const T from = of_bracket(&Bracket::from), to = of_bracket(&Bracket::to),
           from_value = of_bracket(&Bracket::from_value), to_value = of_bracket(&Bracket::to_value),
           forwards =
