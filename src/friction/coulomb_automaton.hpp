@@ -162,8 +162,8 @@ class PhaseMachine {
   const Contact<S>& contact() const { return contact_; }
   /// How far the centre may travel.
   const S& runway() const { return runway_; }
-  /// Where the phase told last begins, or where the design ended: one that jumps just after the landing, or
-  /// at the lift-off if it is followed no further.
+  /// Where the last phase begins. Of a design that has ended: where it ended. For a jump that is just after
+  /// the landing, or the lift-off if it is followed no further.
   const ContactState<S>& at() const { return at_; }
 
  private:

@@ -12,34 +12,25 @@
 
 namespace leapmap::friction {
 
-namespace {
-
-std::shared_ptr<CoulombLanes<Batch>> lanes_for(double tolerance, const Wanted& wanted) {
-  return std::make_shared<CoulombLanes<Batch>>(tolerance, wanted);
-}
-
-}  // namespace
-
 Solver exact(const Scene& scene, double tolerance, const Wanted& wanted) {
   if (scene.jumps > 1) return in_sequence(long_jumps(scene, tolerance, wanted), scene);
-  return [lanes = lanes_for(tolerance, wanted), scene](std::span<const Design> designs,
-                                                       std::span<Outcome> outcomes) {
+  return [lanes = std::make_shared<CoulombLanes<Batch>>(tolerance, wanted), scene](
+             std::span<const Design> designs, std::span<Outcome> outcomes) {
     lanes->solve(designs, scene, outcomes);
   };
 }
 
 JumpSolver<double> jumps(const Scene& scene, double tolerance, const Wanted& wanted) {
-  return [lanes = lanes_for(tolerance, wanted), scene](
+  return [lanes = std::make_shared<CoulombLanes<Batch>>(tolerance, wanted), scene](
              Start start, std::span<const Design> designs, std::span<ContactState<double>> states,
              std::span<Outcome> outcomes) { lanes->solve(start, designs, states, scene, outcomes); };
 }
 
 LongJumpSolver<double> long_jumps(const Scene& scene, double tolerance, const Wanted& wanted) {
-  return [lanes = lanes_for(tolerance, wanted), scene](Start start, std::span<const Design> designs,
-                                                       std::span<ContactState<double>> states,
-                                                       std::span<Outcome> outcomes, const GoesOn& goes_on) {
-    lanes->solve(start, designs, states, scene, outcomes, goes_on);
-  };
+  return [lanes = std::make_shared<CoulombLanes<Batch>>(tolerance, wanted), scene](
+             Start start, std::span<const Design> designs, std::span<ContactState<double>> states,
+             std::span<Outcome> outcomes,
+             const GoesOn& goes_on) { lanes->solve(start, designs, states, scene, outcomes, goes_on); };
 }
 
 std::function<double(const Design&)> effort(const Scene& scene, bool derivatives) {

@@ -75,31 +75,13 @@ auto RollingLanes<T>::take() -> Begun {
   const T last = select(sets_out == zero, roll.release, roll.release + (runway - way * travel));
   std::array<std::uint32_t, width> lanes;
   std::iota(lanes.begin(), lanes.end(), 0u);
-  legs_.template store<T>({roll.hoop.sin_slope,
-                           roll.hoop.cos_slope,
-                           roll.hoop.rho,
-                           roll.hoop.clearance,
-                           roll.hoop.Ic,
-                           roll.hoop.J_min,
-                           roll.hoop.drive,
-                           roll.hoop.thrust,
-                           roll.hoop.resistance,
-                           roll.release,
-                           roll.release_trig.sin,
-                           roll.release_trig.cos,
-                           roll.release_trig.versine,
-                           roll.released,
-                           roll.level,
-                           roll.push,
-                           mu_static,
-                           vis_viva.value,
-                           vis_viva.rate,
-                           guards.downhill.value,
-                           guards.downhill.rate,
-                           guards.uphill.value,
-                           guards.uphill.rate,
-                           last},
-                          lanes.data(), width);
+  hoops_.template store<T>(numbers_of(roll.hoop), lanes.data(), width);
+  rolls_.template store<T>({roll.release, roll.release_trig.sin, roll.release_trig.cos,
+                            roll.release_trig.versine, roll.released, roll.level, roll.push},
+                           lanes.data(), width);
+  looks_.template store<T>({vis_viva.value, vis_viva.rate, guards.downhill.value, guards.downhill.rate,
+                            guards.uphill.value, guards.uphill.rate, mu_static, last},
+                           lanes.data(), width);
   begun.way = way, begun.mu_static = mu_static, begun.travel = travel, begun.roll = roll;
   return begun;
 }
@@ -107,18 +89,15 @@ auto RollingLanes<T>::take() -> Begun {
 /// Where one guard alone falls through zero between two looks, or none up to the runway's end.
 template <class T>
 auto RollingLanes<T>::bracket(std::uint32_t lane) const -> Bracket {
-  const std::array<S, 24> n = legs_.template load<S>(&lane);
-  const Roll<S> roll{.hoop = {n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8]},
-                     .release = n[9],
-                     .release_trig = {n[10], n[11], n[12]},
-                     .released = n[13],
-                     .level = n[14],
-                     .push = n[15]};
-  const Look<S> at_begin{roll.release, {n[17], n[18]}, {{n[19], n[20]}, {n[21], n[22]}}};
-  const S last = n[23];
+  const auto [release, sine, cosine, versine, released, level, push] = rolls_.template load<S>(&lane);
+  const auto [E, E_rate, downhill, downhill_rate, uphill, uphill_rate, mu_static, last] =
+      looks_.template load<S>(&lane);
+  const Roll<S> roll{
+      hoop_of(hoops_.template load<S>(&lane)), release, {sine, cosine, versine}, released, level, push};
+  const Look<S> at_begin{release, {E, E_rate}, {{downhill, downhill_rate}, {uphill, uphill_rate}}};
   Bracket found{PhaseEnd::runway_ends, last, last, S(1), S(-1)};
   bool is_plain = true;
-  walk_.run({roll, roll, n[16]}, at_begin, last, [&](const Look<S>& left, const Look<S>& right) {
+  walk_.run({roll, roll, mu_static}, at_begin, last, [&](const Look<S>& left, const Look<S>& right) {
     const S apart = right.angle - left.angle;
     const auto stays = [&](const Sample<S>& a, const Sample<S>& b) {
       return !has_fallen(a) && !has_fallen(b) && stays_above(a, b, apart);

@@ -61,7 +61,7 @@ class RollingLanes {
     ContactState<S> at;  ///< there; its time is that of the phase's beginning
   };
   Begun take();
-  /// The phase in a lane of those that take() has put into legs_.
+  /// The phase in a lane, as take() has left it there.
   Bracket bracket(std::uint32_t lane) const;
   void alone(std::uint32_t place, std::vector<EndedPhase<S>>& ended) const;
   /// Finds where some phases end that wait.
@@ -78,9 +78,11 @@ class RollingLanes {
   TimedRolls<T> timed_rolls_;
   std::vector<Phase> phases_;           // by place
   std::vector<std::uint32_t> waiting_;  // places
-  /// Of the phases in the lanes: the roll's hoop, release, its sine, cosine and versine, vis viva, level and
-  /// push; mu_static; of the look there E, both guards and their rates; where the runway ends.
-  PackedRows<S, 24> legs_{width};
+  // Of the phases in the lanes: their hoops; release, its sine, cosine and versine, E there, level and push;
+  // the look there: E, both guards and their rates; mu_static, and where the runway ends.
+  PackedRows<S, 9> hoops_{width};
+  PackedRows<S, 7> rolls_{width};
+  PackedRows<S, 8> looks_{width};
   std::vector<Untimed> untimed_;  // by place
   std::vector<typename TimedRolls<T>::Timed> timed_;
 };
