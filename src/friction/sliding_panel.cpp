@@ -172,10 +172,10 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   end.weight = S(2) * stretch.curve * stretch.span * (stretch.begin + stretch.span);
   start.weight = S(2) * stretch.curve * stretch.span * stretch.begin;
   const Value of_one = by_force ? Value(Number(1)) : largest_part(S(S(1) + start.u));
-  const Value spin_tail = largest<Value>({growth.tail, drives.tail / of_one});
+  const Value spin_error = Value(of_running) * largest<Value>({growth.tail, drives.tail / of_one});
   const Value roundings = slide.rounding_at_end(end.sliding.pivot);
   panel.spin_excess =
-      select(panel.indeterminate, panel.excess, Value(spin_tail / (Value(tolerance_) + roundings)));
+      select(panel.indeterminate, panel.excess, Value(spin_error / (Value(tolerance_) + roundings)));
   const auto driven_by = [&](const AtEnd& edge) {
     return way * edge.weight * S(2) *
            (edge.sliding.turn * free_normal_force(hoop, edge.phi, S(0)) + hoop.drive / hoop.Ic);
@@ -200,9 +200,9 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
     return select(panel.indeterminate | panel.spin_vanishes, unsolved,
                   Value(error / (Value(tolerance_) + noise)));
   };
-  panel.excess = excess_of(largest<Value>({spin_tail, Value(Number(0.1)) * time_tail, slip.between}));
+  panel.excess = excess_of(largest<Value>({spin_error, Value(of_running) * time_tail, slip.between}));
   panel.end_excess =
-      excess_of(largest<Value>({spin_tail, integral_error(time_tail, Value(Number(1))), slip.at_end}));
+      excess_of(largest<Value>({spin_error, integral_error(time_tail, Value(Number(1))), slip.at_end}));
 }
 // NOLINTEND(readability-function-size)
 
@@ -238,7 +238,8 @@ auto SlidingPanels<S>::integrate_slip(const Slide& slide, const ContactState<S>&
   panel.travel.start = {from.travel, way * start.weight + from.slip * start.time_rate};
   panel.travel.end = {panel.end.travel, way * end.weight + panel.end.slip * end.time_rate};
   const Value size = largest_part(S(S(1) + abs(from.slip)));
-  return {slips.tail / size, integral_error(slips.tail, Value(abs(value_of(slips.whole)))) / size};
+  return {Value(of_running) * slips.tail / size,
+          integral_error(slips.tail, Value(abs(value_of(slips.whole)))) / size};
 }
 
 template <class S>
@@ -354,7 +355,8 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
   panel.slip.end = {panel.end.slip, duration * end.slip};
   panel.travel.end = {panel.end.travel, duration * (panel.end.slip + panel.end.spin)};
   if (settled)
-    panel.excess = largest<Number>({grid_.tail(angular) / largest_part(S(S(1) + abs(from.spin))),
+    panel.excess = of_running *
+                   largest<Number>({grid_.tail(angular) / largest_part(S(S(1) + abs(from.spin))),
                                     grid_.tail(panel.slip.rate) / largest_part(S(S(1) + abs(from.slip)))}) /
                    (tolerance_ + slide.rounding_at_end(at_end.pivot));
 }

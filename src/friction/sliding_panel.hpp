@@ -151,6 +151,9 @@ class SlidingPanels {
     SlidingCoefficients<S> sliding;
     S u, force, weight, time_rate;
   };
+  /// The error of integrals up to a place on a panel, over their integrand's tail: most often a hundredth
+  /// (numerics/spectral.hpp). With room for what a slide makes grow after it.
+  static constexpr Number of_running = Number(0.25);
   /// The error of an integral over a panel whose nodes resolve a function to its tail. Where its Legendre
   /// coefficients fall like a geometric series, the first that Gauss's rule gets wrong are about the tail's
   /// square over the function's size. Returns some eighty times what they make of the integral.

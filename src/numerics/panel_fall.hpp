@@ -216,12 +216,14 @@ PlainFall<T> plain_fall(const SpectralPanel<T, n>& panel, const typename Spectra
   for (int k = 0; k < 2; ++k)
     x = x -
         (at_from.value + x * (m_from + x * (c2 + x * c3))) / (m_from + x * (T(S(2)) * c2 + x * T(S(3)) * c3));
+  // The cubic's curvature is good to a few thousandths and takes a step of 1e-6 to 1e-14.
   const auto at = [&](const T& place) {
     const auto [value, rate] = panel.template values<2>({&values, &rates}, place);
-    return Sample<T>{value, rate};
+    const T u = (place - from) / h, square = h * h;
+    return CurvedSample<T>{value, rate, (T(S(2)) * c2 + u * T(S(6)) * c3) / square,
+                           T(S(6)) * c3 / (square * h)};
   };
-  const T place = polish_root(at, from, to, T(from + h * x), MaskOf<T>(false),
-                              T(S(4) * std::numeric_limits<S>::epsilon()), falls);
+  const T place = polish_root(at, from, to, T(from + h * x), MaskOf<T>(false), T(S(1e-6)), falls);
   fall.place = select(falls, place, fall.place);
   fall.is_plain = asked & (looking | (falls & (place <= T(S(1)))));
   return fall;
