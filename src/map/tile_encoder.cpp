@@ -27,10 +27,14 @@ void gather_as(std::span<const Row> rows, std::byte* to, const Value& value) {
   }
 }
 
-void append_checksum(std::vector<std::byte>& bytes) {
+EncodedChunk with_checksum(std::span<const std::byte> bytes, std::uint32_t skipped_filters) {
   const std::uint32_t checksum = fletcher32(bytes);
   const auto* first = reinterpret_cast<const std::byte*>(&checksum);
-  bytes.insert(bytes.end(), first, first + sizeof checksum);
+  EncodedChunk chunk{{}, skipped_filters};
+  chunk.bytes.reserve(bytes.size() + sizeof checksum);
+  chunk.bytes.assign(bytes.begin(), bytes.end());
+  chunk.bytes.insert(chunk.bytes.end(), first, first + sizeof checksum);
+  return chunk;
 }
 
 }  // namespace
@@ -118,10 +122,8 @@ EncodedTile TileEncoder::encode(std::size_t number) {
   encoded.number = number;
   encoded.statuses = std::exchange(statuses_, {});
   assert(designs_in(encoded.statuses) == tile.count);
-  for (std::size_t f = 0; f < columns_.size(); ++f) {
-    encoded.chunks.push_back(deflate(spread(tile, f), value_bytes(*layout_, *layout_->fields[f])));
-    append_checksum(encoded.chunks.back().bytes);
-  }
+  for (std::size_t f = 0; f < columns_.size(); ++f)
+    encoded.chunks.push_back(filtered(spread(tile, f), value_bytes(*layout_, *layout_->fields[f])));
   return encoded;
 }
 
@@ -144,10 +146,10 @@ std::span<const std::byte> TileEncoder::spread(const Tile& tile, std::size_t fie
   return chunk_;
 }
 
-/// HDF5's filters before the checksum: first bytes of equal rank together (for values of more than one byte),
-/// then zlib's format.
-EncodedChunk TileEncoder::deflate(std::span<const std::byte> values, std::size_t size) {
-  if (!compressor_) return {{values.begin(), values.end()}};
+/// HDF5's filters: first bytes of equal rank together (for values of more than one byte), then zlib's format,
+/// then the checksum.
+EncodedChunk TileEncoder::filtered(std::span<const std::byte> values, std::size_t size) {
+  if (!compressor_) return with_checksum(values, 0);
   const bool shuffles = size > 1;
   if (shuffles) {
     shuffled_.resize(values.size());
@@ -157,8 +159,8 @@ EncodedChunk TileEncoder::deflate(std::span<const std::byte> values, std::size_t
     values = shuffled_;
   }
   const std::size_t packed = pack(values, values.size() / size);
-  if (packed == 0) return {{values.begin(), values.end()}, shuffles ? 2u : 1u};  // it would not get smaller
-  return {{packed_.begin(), packed_.begin() + static_cast<std::ptrdiff_t>(packed)}};
+  if (packed == 0) return with_checksum(values, shuffles ? 2u : 1u);  // it would not get smaller
+  return with_checksum(std::span(packed_).first(packed), 0);
 }
 
 /// Fills packed_ with zlib's format of the values, and returns its length, 0 if that is no shorter. Planes of

@@ -59,7 +59,7 @@ class TileEncoder {
     void operator()(libdeflate_compressor* compressor) const;
   };
   std::span<const std::byte> spread(const Tile& tile, std::size_t field);
-  EncodedChunk deflate(std::span<const std::byte> values, std::size_t size);
+  EncodedChunk filtered(std::span<const std::byte> values, std::size_t size);
   std::size_t pack(std::span<const std::byte> values, std::size_t plane);
   bool is_plain(std::span<const std::byte> plane);
 

@@ -2,7 +2,7 @@
 /// Where the normal force of a rolling hoop may fall through zero: no interval is passed over that could hold
 /// a fall.
 ///
-/// A revolution is divided at 48 nodes whose sines and cosines all designs share. Between two nodes, h apart,
+/// A revolution is divided at 40 nodes whose sines and cosines all designs share. Between two nodes, h apart,
 /// G (hoop/rolling_by_angle.hpp) differs from its chord by at most m = |G''| h^2 / 8, and G' from the
 /// chord's slope by at most 4 m / h. So an interval is plain if its values differ by more than 4 m, for then
 /// G is monotone, or if one of them is beyond 5 m, for then G is monotone or keeps off zero.
@@ -27,7 +27,7 @@
 
 namespace leapmap {
 
-inline constexpr int nodes_a_turn = 48;
+inline constexpr int nodes_a_turn = 40;
 inline constexpr int turns_a_scan = 3;  ///< each further one costs a third of the first
 
 /// Of one design, a word a revolution: bit k is of node k, or of the interval from there to node k + 1.
@@ -36,13 +36,13 @@ using NodeBits = std::array<std::uint64_t, turns_a_scan>;
 struct ScanFlags {
   NodeBits looks;  ///< intervals that may hold a fall
   NodeBits falls;  ///< those of them that surely hold one, and nothing else
-  /// Nodes where G > 0; bit 48 is of the next revolution's first node. The sign at a node is computed once,
+  /// Nodes where G > 0; bit 40 is of the next revolution's first node. The sign at a node is computed once,
   /// and decides for the intervals on both sides of it: were it computed twice, a root on a node could be
   /// lost by rounding, or counted twice.
   NodeBits above;
 };
 
-/// Of the nodes 0 to 12, which the others mirror: cosines and sines of once, twice and three times the angle.
+/// Of the nodes 0 to 10, which the others mirror: cosines and sines of once, twice and three times the angle.
 template <class S>
 using ScanNodes = std::array<std::array<SinCos<S>, 4>, nodes_a_turn / 4 + 1>;
 

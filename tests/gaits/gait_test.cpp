@@ -109,14 +109,22 @@ void check_against_brute_force(Friction friction, unsigned seed) {
     ++looked_at, longer += found.gait_period > 1;
     LongState at = released<long double>(designs[i]);
     ASSERT_TRUE(jump_on(jumps, designs[i], at, jumps_made, Start::release)) << "design " << i;
+    // The times' tolerance of slides, grown a little.
+    const long double same = friction == Friction::sticking ? 1e-13L : 1e-11L;
+    const auto after_a_period = [&] {
+      LongState round = at;
+      EXPECT_TRUE(jump_on(jumps, designs[i], round, found.gait_period, Start::landing));
+      return round;
+    };
+    // Before it settles a hoop may jump chaotically for as long as roundings let it.
+    for (int more = 0; more < 20 && !(distance(at, after_a_period()) < same); ++more)
+      ASSERT_TRUE(jump_on(jumps, designs[i], at, jumps_made, Start::landing)) << "design " << i;
+    EXPECT_LT(distance(at, after_a_period()), same) << "design " << i;
     LongState round = at;
-    for (int jump = 1; jump <= found.gait_period; ++jump) {
+    for (int jump = 1; jump < found.gait_period; ++jump) {
       ASSERT_TRUE(jump_on(jumps, designs[i], round, 1, Start::landing));
-      if (jump == found.gait_period) break;
       EXPECT_GT(distance(at, round), 1e-7L) << "a shorter period, design " << i;
     }
-    // The times' tolerance of slides, grown a little.
-    EXPECT_LT(distance(at, round), friction == Friction::sticking ? 1e-13L : 1e-11L) << "design " << i;
     // What it is moved by turns to the slowest direction round after round, and is then scaled by the
     // multiplier.
     std::array<long double, 4> along{0.6L, 0.8L, at.slip != 0.0L ? 0.5L : 0.0L,
