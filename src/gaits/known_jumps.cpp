@@ -48,49 +48,58 @@ class AtZero {
 
 }  // namespace
 
-auto KnownJumps::at_or_after(double angle) const -> std::vector<Known>::const_iterator {
-  return std::lower_bound(known_.begin(), known_.end(), angle,
-                          [](const Known& jump, double there) { return jump.from.angle < there; });
+auto KnownJumps::at_or_after(double angle) const -> std::vector<Place>::const_iterator {
+  return std::lower_bound(places_.begin(), places_.end(), angle,
+                          [](const Place& place, double there) { return place.angle < there; });
 }
 
 void KnownJumps::add(const Landed& from, const Landed& to, std::uint64_t phases) {
-  constexpr std::size_t most_known = 256, on_trial = 128;
+  constexpr std::size_t most_known = 256;
   constexpr double too_close = 1e-9;  // to a known jump to be of use
   const bool holds_all_phases = phases != 0 && phases >> 62 == 0;
-  const bool gives_up = known_.size() >= on_trial && interpolated_ < on_trial / 8;
-  if (!holds_all_phases || gives_up || known_.size() == most_known) return;
+  if (!holds_all_phases || gives_up() || known_.size() == most_known) return;
   const auto right = at_or_after(from.angle);
-  const bool is_apart = (right == known_.end() || right->from.angle - from.angle >= too_close) &&
-                        (right == known_.begin() || from.angle - std::prev(right)->from.angle >= too_close);
+  const bool is_apart = (right == places_.end() || right->angle - from.angle >= too_close) &&
+                        (right == places_.begin() || from.angle - std::prev(right)->angle >= too_close);
   if (!is_apart || !std::isfinite(from.angle)) return;
   const auto way = [](double slip) { return (slip > 0.0) - (slip < 0.0); };
-  known_.insert(right, {from, to, {phases, way(from.slip), way(to.slip), to.normal != 0.0}});
+  places_.insert(right, {from.angle, known_.size()});
+  known_.push_back({from, to, {phases, way(from.slip), way(to.slip), to.normal != 0.0}});
+}
+
+bool KnownJumps::gives_up() const {
+  constexpr std::size_t on_trial = 128;
+  return known_.size() >= on_trial && interpolated_ < on_trial / 8;
 }
 
 std::optional<Landed> KnownJumps::next(const Landed& from) {
+  if (gives_up()) return {};
   const auto right = at_or_after(from.angle);
-  if (right == known_.begin() || right == known_.end() || std::prev(right)->kind != right->kind) return {};
+  if (right == places_.begin() || right == places_.end()) return {};
+  const Known& beside = at(*right);
+  const auto is_alike = [&](const Place& place) { return at(place).kind == beside.kind; };
+  if (!is_alike(*std::prev(right))) return {};
   AtZero polynomial;
-  const auto add = [&](const Known& jump) {
+  const auto add = [&](const Place& place) {
     BeginAndEnd seen;
-    seen << between(from, jump.from), between(right->to, jump.to);
-    polynomial.add(jump.from.angle - from.angle, seen);
+    seen << between(from, at(place).from), between(beside.to, at(place).to);
+    polynomial.add(place.angle - from.angle, seen);
   };
   // One on either side, then always the nearer one.
   auto first = std::prev(right), last = std::next(right);
   add(*first), add(*right);
   while (!polynomial.converges(error)) {
-    const bool more_left = first != known_.begin() && std::prev(first)->kind == right->kind;
-    const bool more_right = last != known_.end() && last->kind == right->kind;
+    const bool more_left = first != places_.begin() && is_alike(*std::prev(first));
+    const bool more_right = last != places_.end() && is_alike(*last);
     if (polynomial.count() == most || (!more_left && !more_right)) return {};
-    const bool is_left_nearer = more_left && (!more_right || from.angle - std::prev(first)->from.angle <
-                                                                 last->from.angle - from.angle);
+    const bool is_left_nearer =
+        more_left && (!more_right || from.angle - std::prev(first)->angle < last->angle - from.angle);
     add(is_left_nearer ? *--first : *last++);
   }
   const bool is_on_curve = polynomial.value().head<4>().lpNorm<Eigen::Infinity>() < 10.0 * error;
   if (!is_on_curve || !polynomial.value().allFinite()) return {};
   ++interpolated_;
-  return reduced(moved(right->to, polynomial.value().tail<4>()));
+  return reduced(moved(beside.to, polynomial.value().tail<4>()));
 }
 
 }  // namespace leapmap

@@ -41,9 +41,18 @@ class KnownJumps {
     Landed from, to;
     Kind kind;
   };
-  std::vector<Known>::const_iterator at_or_after(double angle) const;
+  /// Where a jump begins, and which it is.
+  struct Place {
+    double angle;
+    std::size_t jump;
+  };
+  const Known& at(const Place& place) const { return known_[place.jump]; }
+  std::vector<Place>::const_iterator at_or_after(double angle) const;
+  /// So few jumps could be interpolated that it is not worth while.
+  bool gives_up() const;
 
-  std::vector<Known> known_;      // by the angle at which they begin
+  std::vector<Known> known_;
+  std::vector<Place> places_;     // by angle
   std::size_t interpolated_ = 0;  // jumps so far
 };
 
