@@ -200,7 +200,7 @@ class Chain {
   /// Slides over a panel, in halves where that resolves the values but not their derivatives, and as long as
   /// that helps. excess: of the panel that it is half of.
   bool over_panel(typename SlidingPanels<D>::Slide& slide, const Part& part, double excess) {
-    constexpr double resolved = 1e3;  // times the finest tolerance
+    constexpr double resolved = 1e3;  // times the finest tolerance of integrals
     constexpr int most_panels = 2'000;
     typename SlidingPanels<D>::Panel panel;
     panels_.solve(slide, at_, part, panel);

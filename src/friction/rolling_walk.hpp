@@ -126,7 +126,7 @@ class RollingWalk {
  public:
   RollingWalk() {
     for (std::size_t k = 0; k < sin_.size(); ++k) {
-      const Trig<S> phi = trig(S(2) * std::numbers::pi_v<S> * S(k % nodes_a_turn) / S(nodes_a_turn));
+      const Trig<S> phi = trig(S(2) * std::numbers::pi_v<S> * S(k % looks_a_turn) / S(looks_a_turn));
       sin_[k] = phi.sin, cos_[k] = phi.cos, versine_[k] = phi.versine;
     }
     for (std::size_t k = 0; k < counted_.size(); ++k) counted_[k] = S(k);
@@ -137,8 +137,8 @@ class RollingWalk {
   template <class Ends>
   void run(const LegView<S>& view, const Look<S>& at_begin, const S& last, const Ends& ends) const {
     constexpr std::size_t width = Lanes<T>::count;
-    constexpr long turn = nodes_a_turn;
-    const S step = S(2) * std::numbers::pi_v<S> / S(nodes_a_turn);
+    constexpr long turn = looks_a_turn;
+    const S step = S(2) * std::numbers::pi_v<S> / S(looks_a_turn);
     const Roll<T> rolls = widened<T>(view.roll());
     Looks<T> looks;
     looks.put(0, at_begin);
@@ -169,9 +169,9 @@ class RollingWalk {
   }
 
  private:
-  static constexpr std::size_t nodes_a_turn = 48;
+  static constexpr std::size_t looks_a_turn = 48;
   /// One turn, and as many nodes more as there may be lanes.
-  std::array<S, nodes_a_turn + 16> sin_, cos_, versine_;
+  std::array<S, looks_a_turn + 16> sin_, cos_, versine_;
   std::array<S, Lanes<T>::count> counted_;  // 0, 1, 2, ...
 };
 

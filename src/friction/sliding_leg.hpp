@@ -42,7 +42,7 @@ T change(const T& excess, std::size_t nodes, ScalarOf<T> most) {
 template <class S>
 class SlidingLeg {
  public:
-  /// The nodes of a panel resolve what they hold to half the tolerance, relative, or to some roundings.
+  /// Spin, slip and time on a panel are good to half the tolerance, relative, or to some roundings.
   explicit SlidingLeg(double tolerance);
 
   /// Slides on from a state with n0 > 0 (or zero but for rounding), towards `direction` (1 or -1), to the

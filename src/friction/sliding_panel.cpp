@@ -172,7 +172,7 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   end.weight = S(2) * stretch.curve * stretch.span * (stretch.begin + stretch.span);
   start.weight = S(2) * stretch.curve * stretch.span * stretch.begin;
   const Value of_one = by_force ? Value(Number(1)) : largest_part(S(S(1) + start.u));
-  const Value spin_error = Value(of_running) * largest<Value>({growth.tail, drives.tail / of_one});
+  const Value spin_error = Value(error_over_tail) * largest<Value>({growth.tail, drives.tail / of_one});
   const Value roundings = slide.rounding_at_end(end.sliding.pivot);
   panel.spin_excess =
       select(panel.indeterminate, panel.excess, Value(spin_error / (Value(tolerance_) + roundings)));
@@ -200,7 +200,7 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
     return select(panel.indeterminate | panel.spin_vanishes, unsolved,
                   Value(error / (Value(tolerance_) + noise)));
   };
-  panel.excess = excess_of(largest<Value>({spin_error, Value(of_running) * time_tail, slip.between}));
+  panel.excess = excess_of(largest<Value>({spin_error, Value(error_over_tail) * time_tail, slip.between}));
   panel.end_excess =
       excess_of(largest<Value>({spin_error, integral_error(time_tail, Value(Number(1))), slip.at_end}));
 }
@@ -238,7 +238,7 @@ auto SlidingPanels<S>::integrate_slip(const Slide& slide, const ContactState<S>&
   panel.travel.start = {from.travel, way * start.weight + from.slip * start.time_rate};
   panel.travel.end = {panel.end.travel, way * end.weight + panel.end.slip * end.time_rate};
   const Value size = largest_part(S(S(1) + abs(from.slip)));
-  return {Value(of_running) * slips.tail / size,
+  return {Value(error_over_tail) * slips.tail / size,
           integral_error(slips.tail, Value(abs(value_of(slips.whole)))) / size};
 }
 
@@ -355,7 +355,7 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
   panel.slip.end = {panel.end.slip, duration * end.slip};
   panel.travel.end = {panel.end.travel, duration * (panel.end.slip + panel.end.spin)};
   if (settled)
-    panel.excess = of_running *
+    panel.excess = error_over_tail *
                    largest<Number>({grid_.tail(angular) / largest_part(S(S(1) + abs(from.spin))),
                                     grid_.tail(panel.slip.rate) / largest_part(S(S(1) + abs(from.slip)))}) /
                    (tolerance_ + slide.rounding_at_end(at_end.pivot));

@@ -27,6 +27,9 @@ class SlidingPanels {
   using Value = ValueOf<S>;
   using Mask = MaskOf<S>;
   static constexpr std::size_t nodes = 24;
+  /// What is taken for the error of an integral up to a place on a panel, over its integrand's tail. It is
+  /// about a hundredth (numerics/spectral.hpp); the rest is room for errors that grow after it.
+  static constexpr Number error_over_tail = Number(0.25);
   using Grid = SpectralPanel<S, nodes>;
   using Values = typename Grid::Values;
 
@@ -48,7 +51,7 @@ class SlidingPanels {
     Value spin_excess;  ///< the nodes resolve y if at most 1, also where the spin vanishes
     ContactState<S> end;
     S turned;            ///< from start to end
-    Value excess;        ///< the nodes resolve it if at most 1; infinity: it could not be solved
+    Value excess;        ///< at most 1: spin, slip and time are good; infinity: it could not be solved
     Value end_excess;    ///< of a panel by angle, the same of its end alone
     Mask indeterminate;  ///< the pivot is not above zero somewhere: the equations have no answer there
     Mask spin_vanishes;  ///< w^2 is not above zero somewhere
@@ -151,9 +154,6 @@ class SlidingPanels {
     SlidingCoefficients<S> sliding;
     S u, force, weight, time_rate;
   };
-  /// The error of integrals up to a place on a panel, over their integrand's tail: most often a hundredth
-  /// (numerics/spectral.hpp). With room for what a slide makes grow after it.
-  static constexpr Number of_running = Number(0.25);
   /// The error of an integral over a panel whose nodes resolve a function to its tail. Where its Legendre
   /// coefficients fall like a geometric series, the first that Gauss's rule gets wrong are about the tail's
   /// square over the function's size. Returns some eighty times what they make of the integral.

@@ -63,17 +63,18 @@ void KnownJumps::add(const Landed& from, const Landed& to, std::uint64_t phases)
                         (right == places_.begin() || from.angle - std::prev(right)->angle >= too_close);
   if (!is_apart || !std::isfinite(from.angle)) return;
   const auto way = [](double slip) { return (slip > 0.0) - (slip < 0.0); };
-  places_.insert(right, {from.angle, known_.size()});
   known_.push_back({from, to, {phases, way(from.slip), way(to.slip), to.normal != 0.0}});
+  places_.insert(right, {from.angle, known_.size() - 1});
 }
 
 bool KnownJumps::gives_up() const {
   constexpr std::size_t on_trial = 128;
-  return known_.size() >= on_trial && interpolated_ < on_trial / 8;
+  return asked_ >= on_trial && interpolated_ < on_trial / 8;
 }
 
 std::optional<Landed> KnownJumps::next(const Landed& from) {
   if (gives_up()) return {};
+  ++asked_;
   const auto right = at_or_after(from.angle);
   if (right == places_.begin() || right == places_.end()) return {};
   const Known& beside = at(*right);

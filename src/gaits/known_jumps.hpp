@@ -22,7 +22,8 @@ class KnownJumps {
   void add(const Landed& from, const Landed& to, std::uint64_t phases);
 
   /// Where the jump ends that begins there. Nothing if interpolation is not good to some `error`: its
-  /// neighbours went through other phases, lie on another curve, or are too far away.
+  /// neighbours went through other phases, lie on another curve, or are too far away; nor ever again after so
+  /// many that were not known that it is not worth while.
   std::optional<Landed> next(const Landed& from);
 
   /// The largest change that the last neighbour may make to the interpolated landing. The landing itself is
@@ -48,12 +49,11 @@ class KnownJumps {
   };
   const Known& at(const Place& place) const { return known_[place.jump]; }
   std::vector<Place>::const_iterator at_or_after(double angle) const;
-  /// So few jumps could be interpolated that it is not worth while.
   bool gives_up() const;
 
   std::vector<Known> known_;
-  std::vector<Place> places_;     // by angle
-  std::size_t interpolated_ = 0;  // jumps so far
+  std::vector<Place> places_;                 // by angle
+  std::size_t asked_ = 0, interpolated_ = 0;  // jumps so far
 };
 
 }  // namespace leapmap

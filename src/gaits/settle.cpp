@@ -87,7 +87,6 @@ bool GaitSolver::takes(const Design& design, const Landed& landed, Course& cours
   throw_if_stopped();
   ++jumps;
   const auto most_seen = 3 * static_cast<std::size_t>(scene_.most_period) + 1;
-  seen.reserve(2 * most_seen);
   if (seen.size() == 2 * most_seen)
     seen.erase(seen.begin(), seen.begin() + static_cast<std::ptrdiff_t>(most_seen));
   seen.push_back(landed);

@@ -27,7 +27,8 @@
 
 namespace leapmap {
 
-inline constexpr int nodes_a_turn = 40;
+inline constexpr int nodes_a_turn = 40;  ///< in groups of 8, a bit each and one more
+static_assert(nodes_a_turn % 8 == 0 && nodes_a_turn < 64);
 inline constexpr int turns_a_scan = 3;  ///< each further one costs a third of the first
 
 /// Of one design, a word a revolution: bit k is of node k, or of the interval from there to node k + 1.

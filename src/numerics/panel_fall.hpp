@@ -181,6 +181,7 @@ template <class T, std::size_t n>
 PlainFall<T> plain_fall(const SpectralPanel<T, n>& panel, const typename SpectralPanel<T, n>::Values& values,
                         const typename SpectralPanel<T, n>::Values& rates, const Sample<T>& first,
                         const Sample<T>& last, const T& slack, const MaskOf<T>& asked) {
+  using std::abs;
   using S = ScalarOf<T>;
   const T zero(S(0)), third(S(1) / S(3)), bend = panel.fourth_derivative_bound(values) * T(S(1) / S(288));
   const MaskOf<T> starts_at_zero = !(first.value > zero);
@@ -216,14 +217,22 @@ PlainFall<T> plain_fall(const SpectralPanel<T, n>& panel, const typename Spectra
   for (int k = 0; k < 2; ++k)
     x = x -
         (at_from.value + x * (m_from + x * (c2 + x * c3))) / (m_from + x * (T(S(2)) * c2 + x * T(S(3)) * c3));
-  // The cubic's curvature is good to a few thousandths and takes a step of 1e-6 to 1e-14.
   const auto at = [&](const T& place) {
     const auto [value, rate] = panel.template values<2>({&values, &rates}, place);
-    const T u = (place - from) / h, square = h * h;
-    return CurvedSample<T>{value, rate, (T(S(2)) * c2 + u * T(S(6)) * c3) / square,
-                           T(S(6)) * c3 / (square * h)};
+    return Sample<T>{value, rate};
   };
-  const T place = polish_root(at, from, to, T(from + h * x), MaskOf<T>(false), T(S(1e-6)), falls);
+  // One step of Newton's method, where the cubic's curvature bends it by next to nothing.
+  const T guess = from + h * x;
+  const Sample<T> there = at(guess);
+  const T step = -there.value / there.rate,
+          bent = T(S(2)) * (c2 + T(S(3)) * x * c3) / (h * h) * step * step / there.rate;
+  T place = guess + step - T(S(0.5)) * bent;
+  const MaskOf<T> unsure = falls & !((abs(bent) <= T(S(1e-12))) & (place > from) & (place < to));
+  if (any(unsure))
+    place = select(unsure,
+                   polish_root(at, from, to, guess, MaskOf<T>(false),
+                               T(S(4) * std::numeric_limits<S>::epsilon()), unsure),
+                   place);
   fall.place = select(falls, place, fall.place);
   fall.is_plain = asked & (looking | (falls & (place <= T(S(1)))));
   return fall;

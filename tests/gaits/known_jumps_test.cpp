@@ -47,6 +47,14 @@ TEST(KnownJumps, TellNothingWithoutNeighbours) {
   EXPECT_FALSE(known.next(landed_at(0.05)));
 }
 
+TEST(KnownJumps, AreNotAskedForEverWhereTooFewAreKnown) {
+  Landed at = landed_at(0.3);
+  KnownJumps known = chaos(60, at), given_up = known;
+  for (int k = 0; k < 128; ++k) EXPECT_FALSE(given_up.next(landed_at(0.999)));
+  EXPECT_TRUE(known.next(landed_at(0.6)));
+  EXPECT_FALSE(given_up.next(landed_at(0.6)));
+}
+
 TEST(KnownJumps, TellNothingOfLandingsBesideTheirCurve) {
   Landed at = landed_at(0.3);
   KnownJumps known = chaos(150, at);

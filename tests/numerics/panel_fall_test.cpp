@@ -131,8 +131,8 @@ TEST(Spectral, IntegralsUpToAPlaceAreFarFinerThanTheirIntegrandsTail) {
     const Panel::Integrated sums = panel.integrated(values);
     if (!(sums.tail < 1e-3)) continue;
     ++resolved, hardly += sums.tail > 1e-6;
-    // The tail is of degree 23: its integral is some hundred times smaller. A tenth is what slides count on,
-    // as two coefficients may both be small by chance.
+    // The tail is of degree 23: its integral is some hundred times smaller, but the last two coefficients may
+    // both be small by chance. Slides count on a quarter.
     const double most = 0.1 * sums.tail + 1e-14;
     const auto exact = [&](double x) { return std::atan((x - a) / b) + std::atan(a / b); };
     for (std::size_t i = 0; i < n; ++i) ASSERT_NEAR(sums.running[i], exact(panel.node[i]), most);
@@ -157,6 +157,8 @@ TEST(PlainFall, InLanesItIsWhereOnePanelAloneHasIt) {
     for (auto& [height, speed, phase, level] : waves) {
       height = uniform(0.1, 1.0), speed = uniform(0.5, 4.0), phase = uniform(0.0, 6.28);
       level = random() % 2 ? -height * std::sin(phase) : uniform(-1.0, 1.0);
+      if (round % 3 == 0)  // others dip a little below zero
+        phase = uniform(2.0, 4.0), level = height - std::pow(10.0, uniform(-5.0, -1.0));
     }
     const auto at = [&](std::size_t lane, double x) {
       const auto [height, speed, phase, level] = waves[lane];
@@ -184,7 +186,9 @@ TEST(PlainFall, InLanesItIsWhereOnePanelAloneHasIt) {
       ++plain;
       const double place = fall_of([&](double x) { return at(lane, x); }, 1e-12).place;
       falls += place <= 1.0;
-      EXPECT_NEAR(places[lane], place, 1e-13) << round << " " << lane;  // roundings over slopes above 0.01
+      // Roundings over slopes, which are above 0.01 but for dips.
+      const double slope = place <= 1.0 ? std::abs(at(lane, place).rate) : 1.0;
+      EXPECT_NEAR(places[lane], place, 1e-13 + (round % 3 == 0 ? 2e-15 / slope : 0.0)) << round << " " << lane;
     }
   }
   EXPECT_GT(plain, all * 7 / 10);
