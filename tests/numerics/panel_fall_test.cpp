@@ -188,7 +188,8 @@ TEST(PlainFall, InLanesItIsWhereOnePanelAloneHasIt) {
       falls += place <= 1.0;
       // Roundings over slopes, which are above 0.01 but for dips.
       const double slope = place <= 1.0 ? std::abs(at(lane, place).rate) : 1.0;
-      EXPECT_NEAR(places[lane], place, 1e-13 + (round % 3 == 0 ? 2e-15 / slope : 0.0)) << round << " " << lane;
+      EXPECT_NEAR(places[lane], place, 1e-13 + (round % 3 == 0 ? 2e-15 / slope : 0.0))
+          << round << " " << lane;
     }
   }
   EXPECT_GT(plain, all * 7 / 10);
