@@ -62,7 +62,7 @@ void traces() {
 
 void sweeps() {
   lm::Spec spec = lm::read_spec("");
-  for (int i = 0; i < 300; ++i) spec.axes.resize(1), spec.axes[0].values.push_back(0.1 + 0.002 * i);
+  for (int i = 0; i < 3'000; ++i) spec.axes.resize(1), spec.axes[0].values.push_back(0.1 + 0.0002 * i);
   spec.axes[0].key = "slope";
   spec.axes.push_back({"mass_ratio", {1, 2, 3, 4, 5, 6, 7, 8}});
   spec.numerics.audit = 0.01;
@@ -70,13 +70,14 @@ void sweeps() {
   const auto on_progress = [&](std::size_t done, std::size_t total) { stop = stop || done > total / 4; };
   lm::Report report =
       lm::sweep(spec, "map.h5", {.progress = on_progress, .stop_requested = [&] { return stop.load(); }});
-  expect(!report.whole && report.done > 0 && report.done < 2400, "it stops where it is asked to");
+  expect(!report.whole && report.done > 0 && report.done < 24'000, "it stops where it is asked to");
   report = lm::sweep(spec, "map.h5", {.resume = true});
-  expect(report.whole && report.done == 2400 && report.solved < 2400, "and goes on from there");
-  expect(report.audit && !lm::disagree(*report.audit) && report.audit->designs == 24, "audited");
+  expect(report.whole && report.done == 24'000 && report.solved < 24'000, "and goes on from there");
+  expect(report.audit && !lm::disagree(*report.audit) && report.audit->designs == 240, "audited");
 
   const lm::Map map("map.h5");
-  expect(map.shape() == std::vector<std::size_t>({300, 8}) && map.axes()[1].key == "mass_ratio", "its axes");
+  expect(map.shape() == std::vector<std::size_t>({3'000, 8}) && map.axes()[1].key == "mass_ratio",
+         "its axes");
   lm::Design design;
   design.slope = spec.axes[0].values[123], design.mass_ratio = 5;
   expect(map.read("jump_height")[123 * 8 + 4] == lm::solve(design).jump_height,
