@@ -166,9 +166,9 @@ struct SpectralPanel {
     }
     return sum(bound);
   }
-  /// The larger of f's last two Legendre coefficients: about the error of values between the nodes, some
-  /// hundred times (4 n) that of integrals up to a place, and, where f is of size 1, the square root of that
-  /// of the integral over the panel. Of duals, of all derivatives too.
+  /// The larger of f's last two Legendre coefficients, about the error of values between the nodes. Integrals
+  /// up to a place are off by about 1 / (4 n) of it. Where f is of size 1, the integral over the panel is off
+  /// by about its square. Of duals, of all derivatives too.
   ValueOf<S> tail(const Values& f) const {
     return larger(largest_part(dot(last_but_one, f)), largest_part(dot(last, f)));
   }
