@@ -213,9 +213,9 @@ class PhaseMachine {
   /// begin by sinking into the plane, even if it came up again later. Neither contact nor flight is
   /// consistent then.
   bool sinks_without_motor() const {
-    const S held_down = hoop_.cos_slope + hoop_.rho * trig(at_.angle).cos * at_.spin * at_.spin;
     const bool idles = hoop_.motor() != S(0) && hoop_.aloft == S(0);
-    return idles && !(at_.normal > S(0)) && held_down > S(1e-9);
+    if (!idles || at_.normal > S(0)) return false;
+    return hoop_.cos_slope + hoop_.rho * trig(at_.angle).cos * at_.spin * at_.spin > S(1e-9);
   }
 
   /// Tells of a flight, and whether it is the jump.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -34,41 +35,52 @@ struct Look {
   StickGuards<S> guards;
 };
 
-/// Looks at neighbouring angles, one after the other: the last one of the lanes before, then one a lane.
+/// Looks at as many neighbouring angles as there are lanes, and at the one before them, one after the other.
 template <class T>
-struct Looks {
+class LooksInARow {
+ public:
   using S = ScalarOf<T>;
-  using Numbers = std::array<S, Lanes<T>::count + 1>;
-  struct Samples {
-    Numbers value, rate;
 
-    /// Stores the lanes. Returns between which neighbours, `apart` from each other, the function surely stays
-    /// above zero.
-    MaskOf<T> put_lanes(const Sample<T>& lanes, const T& apart) {
-      Lanes<T>::store(lanes.value, value.data() + 1), Lanes<T>::store(lanes.rate, rate.data() + 1);
-      const Sample<T> before{moved_up(value[0], lanes.value), moved_up(rate[0], lanes.rate)};
-      return (smaller(before.value, lanes.value) > T(S(0))) & stays_above(before, lanes, apart);
+  /// before: with that one in its last lane.
+  LooksInARow(const Look<T>& before, const Look<T>& now) {
+    const auto numbers_of_look = [](const Look<T>& look) {
+      return std::array{look.angle,
+                        look.vis_viva.value,
+                        look.vis_viva.rate,
+                        look.guards.downhill.value,
+                        look.guards.downhill.rate,
+                        look.guards.uphill.value,
+                        look.guards.uphill.rate};
+    };
+    const auto a = numbers_of_look(before), b = numbers_of_look(now);
+    for (std::size_t k = 0; k < a.size(); ++k) {
+      Lanes<T>::store(a[k], numbers_[k].data());
+      Lanes<T>::store(b[k], numbers_[k].data() + width);
     }
-    void put(std::size_t k, const Sample<S>& sample) { value[k] = sample.value, rate[k] = sample.rate; }
-    Sample<S> at(std::size_t k) const { return {value[k], rate[k]}; }
-  };
-  Numbers angle;
-  Samples vis_viva, downhill, uphill;
+  }
+  /// From 0, the one before the lanes, to their number.
+  Look<S> at(std::size_t k) const {
+    const auto number = [&](std::size_t of) { return numbers_[of][width - 1 + k]; };
+    return {number(0), {number(1), number(2)}, {{number(3), number(4)}, {number(5), number(6)}}};
+  }
 
-  void put(std::size_t k, const Look<S>& look) {
-    angle[k] = look.angle, vis_viva.put(k, look.vis_viva);
-    downhill.put(k, look.guards.downhill), uphill.put(k, look.guards.uphill);
-  }
-  /// Stores the lanes. Returns between which neighbours neither spin nor friction is used up, a bit for each
-  /// two.
-  unsigned put_lanes(const T& angles, const Sample<T>& E, const StickGuards<T>& guards) {
-    Lanes<T>::store(angles, angle.data() + 1);
-    const T apart = angles - moved_up(angle[0], angles);
-    return Lanes<T>::bits(vis_viva.put_lanes(E, apart) & downhill.put_lanes(guards.downhill, apart) &
-                          uphill.put_lanes(guards.uphill, apart));
-  }
-  Look<S> at(std::size_t k) const { return {angle[k], vis_viva.at(k), {downhill.at(k), uphill.at(k)}}; }
+ private:
+  static constexpr std::size_t width = Lanes<T>::count;
+  std::array<std::array<S, 2 * width>, 7> numbers_;
 };
+
+/// Between which of such neighbours neither spin nor friction is used up, a bit for each two.
+template <class T>
+unsigned clear_between(const Look<T>& before, const Look<T>& now) {
+  const T apart = now.angle - moved_up(before.angle, now.angle);
+  const auto stays = [&](const Sample<T>& a, const Sample<T>& b) {
+    const Sample<T> left{moved_up(a.value, b.value), moved_up(a.rate, b.rate)};
+    return (smaller(left.value, b.value) > T(ScalarOf<T>(0))) & stays_above(left, b, apart);
+  };
+  return Lanes<T>::bits(stays(before.vis_viva, now.vis_viva) &
+                        stays(before.guards.downhill, now.guards.downhill) &
+                        stays(before.guards.uphill, now.guards.uphill));
+}
 
 /// What a leg looks like at its angles. roll: of the phase's beginning, near which E is known best, as seen
 /// on the leg; begin: of the leg's.
@@ -140,35 +152,43 @@ class RollingWalk {
     constexpr long turn = looks_a_turn;
     const S step = S(2) * std::numbers::pi_v<S> / S(looks_a_turn);
     const Roll<T> rolls = widened<T>(view.roll());
-    Looks<T> looks;
-    looks.put(0, at_begin);
+    Look<T> before = in_all_lanes(at_begin);
+    S left_at = at_begin.angle;
     for (long node = static_cast<long>(std::floor(view.begin().release / step)) + 1;; node += width) {
       const auto first = static_cast<std::size_t>((node % turn + turn) % turn);
       const Trig<T> phi{Lanes<T>::load(sin_.data() + first), Lanes<T>::load(cos_.data() + first),
                         Lanes<T>::load(versine_.data() + first)};
-      const T angles = (T(S(node)) + Lanes<T>::load(counted_.data())) * T(step);
-      const T E = vis_viva(rolls, angles, phi);
-      const unsigned clear = looks.put_lanes(angles, {E, T(S(2)) * torque(rolls.hoop, phi)},
-                                             stick_guards(rolls.hoop, phi, E, T(view.mu_static())));
-      constexpr unsigned all_clear = (1u << width) - 1u;
-      if (clear == all_clear && looks.angle[1] > looks.angle[0] && looks.angle[width] < last) {
-        looks.put(0, looks.at(width));
-        continue;
+      Look<T> now;
+      now.angle = (T(S(node)) + Lanes<T>::load(counted_.data())) * T(step);
+      const T E = vis_viva(rolls, now.angle, phi);
+      now.vis_viva = {E, T(S(2)) * torque(rolls.hoop, phi)};
+      now.guards = stick_guards(rolls.hoop, phi, E, T(view.mu_static()));
+      constexpr unsigned all = (1u << width) - 1u;
+      // One bit for each look, and for the way to it.
+      const unsigned beyond = Lanes<T>::bits(!(now.angle < T(last)));
+      unsigned stops = (~clear_between(before, now) & all) | beyond;
+      const bool in_order = S(node) * step > left_at;  // else it begins at the first node, but for rounding
+      if (!in_order) stops |= 3u & all;
+      if (stops != 0) {
+        const LooksInARow<T> looks(before, now);
+        for (; stops != 0; stops &= stops - 1) {
+          const auto right = static_cast<unsigned>(std::countr_zero(stops)) + 1;
+          const bool is_last = beyond >> (right - 1) & 1u;
+          if (!in_order && right == 1 && !is_last) continue;
+          const unsigned left = !in_order && right == 2 ? 0 : right - 1;
+          if (ends(looks.at(left), is_last ? view.at(last) : looks.at(right)) || is_last) return;
+        }
       }
-      std::size_t left = 0;
-      for (std::size_t k = 1; k <= width; ++k) {
-        const bool is_last = !(looks.angle[k] < last);
-        if (!is_last && looks.angle[k] <= looks.angle[left]) continue;
-        const bool is_clear = !is_last && left == k - 1 && (clear >> left & 1u);
-        if (!is_clear && ends(looks.at(left), is_last ? view.at(last) : looks.at(k))) return;
-        if (is_last) return;
-        left = k;
-      }
-      looks.put(0, looks.at(left));
+      if (in_order || width > 1) before = now, left_at = S(node + static_cast<long>(width) - 1) * step;
     }
   }
 
  private:
+  static Look<T> in_all_lanes(const Look<S>& look) {
+    const auto sample = [](const Sample<S>& one) { return Sample<T>{T(one.value), T(one.rate)}; };
+    return {T(look.angle), sample(look.vis_viva), {sample(look.guards.downhill), sample(look.guards.uphill)}};
+  }
+
   static constexpr std::size_t looks_a_turn = 48;
   /// One turn, and as many nodes more as there may be lanes.
   std::array<S, looks_a_turn + 16> sin_, cos_, versine_;

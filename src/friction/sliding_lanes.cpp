@@ -27,10 +27,6 @@ double stretch_for(double tolerance, std::size_t nodes) {
   return std::cosh(std::log(grown / tolerance) / static_cast<double>(nodes));
 }
 
-/// In the order in which SlidingLeg looks at them, as of two at the same place the first counts.
-constexpr std::array guards{PhaseEnd::lifts_off, PhaseEnd::slip_ends, PhaseEnd::runway_ends,
-                            PhaseEnd::runway_ends};
-
 }  // namespace
 
 template <class T>
@@ -80,42 +76,56 @@ void SlidingLanes<T>::alone(std::uint32_t place, std::vector<EndedPhase<S>>& end
 }
 
 template <class T>
-auto SlidingLanes<T>::first_events(const Panel& panel, const T& runway, const T& direction,
-                                   const MaskOf<T>& asked) const -> Events {
+auto SlidingLanes<T>::first_events(const InLanes& slides, const MaskOf<T>& asked) const -> Events {
   using std::abs;
+  using Course = typename Panels::Course;
   constexpr std::size_t nodes = Panels::nodes;
   const typename Panels::Grid& grid = panels_.grid();
+  const auto extent = [](const Course& course) {
+    return extent_of<T, nodes>(course.value, course.rate, course.start, course.end);
+  };
   Events events{T(S(2)), {}, MaskOf<T>(true)};
-  const T zero(S(0)), one(S(1));
-  const std::array<const typename Panels::Course*, 4> courses{&panel.free_force, &panel.slip, &panel.travel,
-                                                              &panel.travel};
-  const std::array<T, 4> offsets{zero, zero, runway, runway}, factors{one, direction, -one, one};
-  PanelExtent<T> of_course;
-  for (std::size_t g = 0; g < guards.size(); ++g) {
-    const auto& course = *courses[g];
-    const T &offset = offsets[g], &factor = factors[g];
-    if (g == 0 || courses[g] != courses[g - 1])
-      of_course = extent_of<T, nodes>(course.value, course.rate, course.start, course.end);
-    const PanelExtent<T> extent = of_course.of(offset, factor);
-    const MaskOf<T> near = asked & !is_clear_of_zero(grid, extent);
-    if (!any(near)) continue;
-    typename Panels::Values values, rates;
-    for (std::size_t i = 0; i < nodes; ++i)
-      values[i] = offset + factor * course.value[i], rates[i] = factor * course.rate[i];
-    const auto sample = [&](const Sample<T>& at) {
-      return Sample<T>{offset + factor * at.value, factor * at.rate};
-    };
-    const T slack = T(S(4)) * grid.tail(values) + T(S(64) * std::numeric_limits<S>::epsilon()) *
-                                                      larger(T(abs(extent.least)), T(abs(extent.most)));
+  // In the order in which SlidingLeg looks, as of two at the same place the first counts.
+  const auto look = [&](PhaseEnd end, const Course& guard, const PanelExtent<T>& of_guard,
+                        const MaskOf<T>& near) {
+    const auto [bend, tail] = grid.roughness(guard.value);
+    const T slack = T(S(4)) * tail + T(S(64) * std::numeric_limits<S>::epsilon()) *
+                                         larger(T(abs(of_guard.least)), T(abs(of_guard.most)));
     const PlainFall<T> fall =
-        plain_fall(grid, values, rates, sample(course.start), sample(course.end), slack, near);
+        plain_fall(grid, guard.value, guard.rate, guard.start, guard.end, bend, slack, near);
     events.plain = events.plain & (fall.is_plain | !near);
     const MaskOf<T> first = near & fall.is_plain & (fall.place < events.place);
     events.place = select(first, fall.place, events.place);
     const unsigned bits = Lanes<T>::bits(first);
     for (std::size_t i = 0; i < width; ++i)
-      if (bits >> i & 1u) events.end[i] = guards[g];
-  }
+      if (bits >> i & 1u) events.end[i] = end;
+  };
+  // The same for offset + factor times a course, factor 1 or -1.
+  const auto look_past = [&](PhaseEnd end, const T& offset, const T& factor, const Course& course,
+                             const PanelExtent<T>& of_course, const MaskOf<T>& of_lanes) {
+    const PanelExtent<T> of_guard = of_course.of(offset, factor);
+    const MaskOf<T> near = of_lanes & !is_clear_of_zero(grid, of_guard);
+    if (!any(near)) return;
+    const auto sample = [&](const Sample<T>& at) {
+      return Sample<T>{offset + factor * at.value, factor * at.rate};
+    };
+    Course guard;
+    guard.start = sample(course.start), guard.end = sample(course.end);
+    for (std::size_t i = 0; i < nodes; ++i)
+      guard.value[i] = offset + factor * course.value[i], guard.rate[i] = factor * course.rate[i];
+    look(end, guard, of_guard, near);
+  };
+  const T zero(S(0)), one(S(1));
+  const PanelExtent<T> force = extent(panel_.free_force), slip = extent(panel_.slip);
+  const MaskOf<T> lifting = asked & !is_clear_of_zero(grid, force);
+  if (any(lifting)) look(PhaseEnd::lifts_off, panel_.free_force, force, lifting);
+  look_past(PhaseEnd::slip_ends, zero, slides.direction, panel_.slip, slip, asked);
+  const MaskOf<T> far = asked & !panels_.keeps_within(slides.runway, slides.from, panel_, slip);
+  if (!any(far)) return events;
+  const Course travel = panels_.travel_on(panel_);
+  const PanelExtent<T> along = extent(travel);
+  for (const T& downhill : {one, -one})
+    look_past(PhaseEnd::runway_ends, slides.runway, -downhill, travel, along, far);
   return events;
 }
 
@@ -128,10 +138,11 @@ auto SlidingLanes<T>::rest(const typename Panels::Stretch& stretch, const Panel&
   T most = panel.start_y;
   for (std::size_t i = 0; i < Panels::nodes; ++i)
     left[i] = panel.start_y + panel.driven[i], most = larger(most, T(abs(left[i])));
-  const T slack = T(S(4)) * panels_.grid().tail(left) + T(S(64) * std::numeric_limits<S>::epsilon()) * most;
+  const auto [bend, tail] = panels_.grid().roughness(left);
+  const T slack = T(S(4)) * tail + T(S(64) * std::numeric_limits<S>::epsilon()) * most;
   const PlainFall<T> fall =
       plain_fall(panels_.grid(), left, panel.driven_rate, {panel.start_y, panel.driven_start.rate},
-                 {panel.start_y + panel.driven_end.value, panel.driven_end.rate}, slack, asked);
+                 {panel.start_y + panel.driven_end.value, panel.driven_end.rate}, bend, slack, asked);
   return {asked & fall.is_plain & (fall.place <= T(S(1))), stretch.angle(fall.place)};
 }
 
@@ -210,7 +221,7 @@ auto SlidingLanes<T>::look_at_panel(const InLanes& slides, const Ahead& ahead) c
   seen.done = ends_well & slides.is_last;
 
   const MaskOf<T> looks = ends_well & !slides.is_last;
-  seen.events = first_events(panel_, slides.runway, slides.direction, looks);
+  seen.events = first_events(slides, looks);
   const MaskOf<T> falls = looks & seen.events.plain & (seen.events.place <= one), comes = falls & sharp;
   seen.goes_on = looks & seen.events.plain & !falls;
   seen.solved = ends_well & (slides.is_last | sharp | seen.goes_on);

@@ -79,7 +79,7 @@ class SlidingLanes {
     std::array<PhaseEnd, width> end;
     MaskOf<T> plain;  ///< else the slide has to look for it by itself
   };
-  Events first_events(const Panel& panel, const T& runway, const T& direction, const MaskOf<T>& asked) const;
+  Events first_events(const InLanes& slides, const MaskOf<T>& asked) const;
   /// Where the spin vanishes on panels on which it does.
   struct Rest {
     MaskOf<T> is_known;

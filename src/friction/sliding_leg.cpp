@@ -62,44 +62,40 @@ SlidingLeg<S>::SlidingLeg(double tolerance)
     : panels_(std::max(S(tolerance) * S(0.5), S(100) * std::numeric_limits<S>::epsilon())) {}
 
 template <class S>
-auto SlidingLeg<S>::first_event(const S& runway, int direction, const Panel& panel) const -> Event {
-  using Values = typename Panels::Values;
-  struct Guard {
-    PhaseEnd end;
-    S offset, factor;  // of the values that it falls with
-    const typename Panels::Course& course;
-    const PanelExtent<S>& extent;
-  };
-  const auto extent = [](const typename Panels::Course& course) {
+auto SlidingLeg<S>::first_event(const ContactState<S>& from, const S& runway, int direction,
+                                const Panel& panel) const -> Event {
+  using Course = typename Panels::Course;
+  const auto extent = [](const Course& course) {
     return extent_of<S, Panels::nodes>(course.value, course.rate, course.start, course.end);
   };
-  const PanelExtent<S> force = extent(panel.free_force), slip = extent(panel.slip),
-                       travel = extent(panel.travel);
-  const Guard guards[]{{PhaseEnd::lifts_off, S(0), S(1), panel.free_force, force},
-                       {PhaseEnd::slip_ends, S(0), S(direction), panel.slip, slip},
-                       {PhaseEnd::runway_ends, runway, S(-1), panel.travel, travel},
-                       {PhaseEnd::runway_ends, runway, S(1), panel.travel, travel}};
   Event event{S(2), PhaseEnd::failed, false};
-  for (const Guard& guard : guards) {
-    const bool uphill = guard.end == PhaseEnd::runway_ends && guard.factor > S(0);
-    if (uphill && panel.travel.start.value > S(0) && panel.travel.end.value > S(0)) continue;
-    if (is_clear_of_zero(panels_.grid(), guard.extent.of(guard.offset, guard.factor))) continue;
-    Values values, rates;
+  // Where offset + factor times the course falls through zero; of_course: its extent.
+  const auto look = [&](PhaseEnd end, const S& offset, const S& factor, const Course& course,
+                        const PanelExtent<S>& of_course) {
+    if (is_clear_of_zero(panels_.grid(), of_course.of(offset, factor))) return;
+    typename Panels::Values values, rates;
     S largest(0);
     for (std::size_t i = 0; i < Panels::nodes; ++i) {
-      values[i] = guard.offset + guard.factor * guard.course.value[i];
-      rates[i] = guard.factor * guard.course.rate[i];
+      values[i] = offset + factor * course.value[i];
+      rates[i] = factor * course.rate[i];
       largest = std::max(largest, std::abs(values[i]));
     }
     const auto sample = [&](const Sample<S>& at) {
-      return Sample<S>{guard.offset + guard.factor * at.value, guard.factor * at.rate};
+      return Sample<S>{offset + factor * at.value, factor * at.rate};
     };
     const S slack = S(4) * panels_.grid().tail(values) + S(64) * std::numeric_limits<S>::epsilon() * largest;
-    const PanelFall<S> fall = first_fall(panels_.grid(), values, rates, sample(guard.course.start),
-                                         sample(guard.course.end), slack);
+    const PanelFall<S> fall =
+        first_fall(panels_.grid(), values, rates, sample(course.start), sample(course.end), slack);
     event.unsure = event.unsure || fall.unsure;
-    if (fall.place < event.place) event.place = fall.place, event.end = guard.end;
-  }
+    if (fall.place < event.place) event.place = fall.place, event.end = end;
+  };
+  look(PhaseEnd::lifts_off, S(0), S(1), panel.free_force, extent(panel.free_force));
+  const PanelExtent<S> slip = extent(panel.slip);
+  look(PhaseEnd::slip_ends, S(0), S(direction), panel.slip, slip);
+  if (panels_.keeps_within(runway, from, panel, slip)) return event;
+  const Course travel = panels_.travel_on(panel);
+  const PanelExtent<S> along = extent(travel);
+  for (const S downhill : {S(1), S(-1)}) look(PhaseEnd::runway_ends, runway, -downhill, travel, along);
   return event;
 }
 
@@ -208,7 +204,7 @@ PhaseEnd SlidingLeg<S>::run(const Hoop<S>& hoop, const S& mu_kinetic, ContactSta
       if (!std::isnan(left)) bounds.longest = std::min(bounds.longest, S(share_of_edge) * left);
     }
     if (const auto end = take_panel(slide, at, way, start.angular, bounds, step)) return *end;
-    const Event event = first_event(runway, direction, panel);
+    const Event event = first_event(at, runway, direction, panel);
     if (event.unsure && refined < 2) {  // the polynomials of shorter panels are right to rounding
       step.extent() *= S(0.5);
       ++refined;

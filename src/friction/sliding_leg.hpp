@@ -65,7 +65,7 @@ class SlidingLeg {
     PhaseEnd end;
     bool unsure;
   };
-  Event first_event(const S& runway, int direction, const Panel& panel) const;
+  Event first_event(const ContactState<S>& from, const S& runway, int direction, const Panel& panel) const;
 
   /// Panel after panel: the one in hand, and how long the next one may be.
   struct Step {

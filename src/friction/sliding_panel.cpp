@@ -59,31 +59,34 @@ auto SlidingPanels<S>::at_nodes(const Slide& slide, const ContactState<S>& from,
   const auto put = [](const T& value, Values& values, std::size_t i) { Grid::put(value, values, i); };
   const Hoop<T> hoop = widened<T>(slide.hoop);
   AtNodes nodes_at;
+  Values angle;  // past the start
   // Two short loops, as the processor looks only so many operations ahead: the next nodes' are then among
   // them, while those of one node wait for each other.
   for (std::size_t i = 0; i < nodes; i += width) {
     const T q = T(stretch.begin) + T(stretch.span) * Grid::shared(grid_.node, i);
     const T x = T(stretch.shift) + T(stretch.curve) * q * q;
-    put(q * T(S(2) * stretch.curve * stretch.span), nodes_at.weight, i);
-    put(x, nodes_at.angle, i);
+    put(q * T(S(2) * way * stretch.curve * stretch.span), nodes_at.turning, i);
+    put(x, angle, i);
     nodes_at.phi[i / width] = trig(T(from.angle) + T(way) * x);
   }
   T least(std::numeric_limits<Number>::max());
+  const T torque = hoop.drive / hoop.Ic, raised = hoop.rho * torque;
   for (std::size_t i = 0; i < nodes; i += width) {
-    const T w = Grid::at(nodes_at.weight, i);
     const Trig<T>& phi = nodes_at.phi[i / width];
-    const SlidingCoefficients<T> at = slide.coefficients(hoop, phi, T(way) * Grid::at(nodes_at.angle, i));
+    const SlidingCoefficients<T> at = slide.coefficients(hoop, phi, T(way) * Grid::at(angle, i));
     nodes_at.sliding[i / width] = at;
     least = smaller(least, at.pivot);
-    const T idle = free_normal_force(hoop, phi, T(S(0))), torque = hoop.drive / hoop.Ic;
-    const T turned = T(way) * w, grows = T(S(2)) * at.turn * hoop.rho * phi.cos;
+    const T idle = hoop.cos_slope + raised * phi.sin;  // n0 at no spin
+    const T turned = Grid::at(nodes_at.turning, i), twice = T(S(2)) * turned,
+            by_force_alone = twice * at.turn;
+    const T lever = hoop.rho * phi.cos;
     if (by_force) {
       const T tangent = phi.sin / phi.cos;
-      put(turned * (grows - tangent), nodes_at.grows, i);
-      put(turned * (tangent * idle + T(S(3)) * hoop.rho * phi.cos * torque), nodes_at.drives, i);
+      put(by_force_alone * lever - turned * tangent, nodes_at.grows, i);
+      put(turned * (tangent * idle + T(S(3)) * lever * torque), nodes_at.drives, i);
     } else {
-      put(turned * grows, nodes_at.grows, i);
-      put(turned * T(S(2)) * (at.turn * idle + torque), nodes_at.drives, i);
+      put(by_force_alone * lever, nodes_at.grows, i);
+      put(by_force_alone * idle + twice * torque, nodes_at.drives, i);
     }
   }
   nodes_at.least_pivot = least;
@@ -95,13 +98,12 @@ auto SlidingPanels<S>::at_nodes(const Slide& slide, const ContactState<S>& from,
 template <class S>
 void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
                                       Panel& panel) const {
-  using std::sqrt;
+  using std::abs, std::sqrt;
   constexpr std::size_t width = Grid::width;
   const auto get = [](const Values& values, std::size_t i) { return Grid::at(values, i); };
   const auto put = [](const T& value, Values& values, std::size_t i) { Grid::put(value, values, i); };
   const Hoop<S>& hoop = slide.hoop;
   const Hoop<T> hoops = widened<T>(hoop);
-  const T m(slide.friction);
   AtEnd start, end;
   start.phi = trig(from.angle);
   start.sliding = slide.coefficients(hoop, start.phi, S(0));
@@ -118,9 +120,9 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   end.sliding = slide.coefficients(hoop, end.phi, S(way * length));
   // With n0 in place of u, where it is the one that vanishes, and the cosine stays away from zero.
   const S farthest = S(-0.2);
-  const bool by_force = panel.by_force =
-      slide.edge && all((slide.free_force < S(0.5) * hoop.cos_slope) & (start.phi.cos < farthest) &
-                        (end.phi.cos < farthest));
+  const bool by_force = panel.by_force = has_edges && slide.edge &&
+                                         all((slide.free_force < S(0.5) * hoop.cos_slope) &
+                                             (start.phi.cos < farthest) & (end.phi.cos < farthest));
   const AtNodes at = at_nodes(slide, from, stretch, way, by_force);
   panel.least_pivot =
       smaller(least_node<S, T>(at.least_pivot), value_of(S(smaller(start.sliding.pivot, end.sliding.pivot))));
@@ -149,97 +151,122 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   const S fast(std::numeric_limits<Number>::max());
   T least_u(smaller(select(start.u > S(0), start.u, fast), select(rests, fast, end.u)));
   Values& time_rate = panel.time_rate;
-  Values squared;
   for (std::size_t i = 0; i < nodes; i += width) {
     const Trig<T>& phi = at.phi[i / width];
     const T y = get(grown_by, i) * (T(start_y) + get(panel.driven, i));
-    const T u = spin_squared(hoops, phi, y, by_force);
+    const T u = spin_squared(hoops, phi, y, by_force), inverse = T(way) * reciprocal_sqrt(u);
     least_u = smaller(least_u, u);
-    put(u, squared, i);
+    put(u * inverse, panel.spin, i);
     put(force(hoops, phi, y), panel.free_force.value, i);
-    put(get(at.weight, i) * reciprocal_sqrt(u), time_rate, i);
-  }
-  for (std::size_t i = 0; i < nodes; i += width) {
-    const Trig<T>& phi = at.phi[i / width];
-    const SlidingCoefficients<T>& there = at.sliding[i / width];
-    const T u = get(squared, i), n0 = get(panel.free_force.value, i), w = get(at.weight, i);
-    put(sliding_motion(hoops, phi, u, m, there, n0).slip * get(time_rate, i), panel.slip.rate, i);
-    const T angular = there.turn * n0 + hoops.drive / hoops.Ic;
-    put(T(way) * w * free_normal_force_rate(hoops, phi, u, angular), panel.free_force.rate, i);
+    put(get(at.turning, i) * inverse, time_rate, i);
   }
   const Value slowest = least_node<S, T>(least_u);
   panel.spin_vanishes = !(slowest > Value(Number(0)));
-  end.weight = S(2) * stretch.curve * stretch.span * (stretch.begin + stretch.span);
-  start.weight = S(2) * stretch.curve * stretch.span * stretch.begin;
+  end.turning = S(2) * way * stretch.curve * stretch.span * (stretch.begin + stretch.span);
+  start.turning = S(2) * way * stretch.curve * stretch.span * stretch.begin;
   const Value of_one = by_force ? Value(Number(1)) : largest_part(S(S(1) + start.u));
   const Value spin_error = Value(error_over_tail) * largest<Value>({growth.tail, drives.tail / of_one});
   const Value roundings = slide.rounding_at_end(end.sliding.pivot);
   panel.spin_excess =
       select(panel.indeterminate, panel.excess, Value(spin_error / (Value(tolerance_) + roundings)));
   const auto driven_by = [&](const AtEnd& edge) {
-    return way * edge.weight * S(2) *
+    return edge.turning * S(2) *
            (edge.sliding.turn * free_normal_force(hoop, edge.phi, S(0)) + hoop.drive / hoop.Ic);
   };
   panel.driven_start = {S(0), driven_by(start)};
   panel.driven_end = {end_driven, driven_by(end) / end_growth};
   if (all(panel.spin_vanishes)) return;
 
-  // At rest weight over spin has a limit.
-  end.time_rate = select(rests, time_rate[nodes - 1], S(end.weight / sqrt(end.u)));
-  start.time_rate = select(start.u > S(0), S(start.weight / sqrt(start.u)), time_rate[0]);
-  const S duration = grid_.integral(time_rate);
-  panel.end.time = from.time + duration;
+  // At rest the one over the other has a limit.
   panel.end.spin = way * sqrt(end.u);
-  const Errors slip = integrate_slip(slide, from, at, start, end, panel);
-  // Beside the end at rest w^2 has few digits, and little weight.
+  end.time_rate = select(rests, time_rate[nodes - 1], S(end.turning / panel.end.spin));
+  start.time_rate = select(start.u > S(0), S(start.turning / from.spin), time_rate[0]);
+  const typename Grid::Integrated clock = grid_.integrated(time_rate);
+  panel.elapsed = clock.running;
+  panel.end.time = from.time + clock.whole;
+  const Value time_tail = clock.tail / largest_part(clock.whole);
+  if constexpr (!has_derivatives<S>) fill_nodes(slide, from, at, start.phi, panel);
+  fill_ends(slide, from, start, end, panel);
+  Value slip_tail(Number(0));  // derivatives are asked for at a panel's end
+  if constexpr (!has_derivatives<S>) slip_tail = grid_.tail(panel.slip.rate);
+  // Beside the end at rest w^2 has few digits, and little effect.
   const Value lost =
       select(rests, Value(Number(1)), smaller(Value(value_of(start.u) / slowest), Value(Number(1e6))));
   const Value noise = roundings + Value(Number(16) * std::numeric_limits<Number>::epsilon()) * lost;
-  const Value time_tail = grid_.tail(time_rate) / largest_part(duration);
+  // Slip gains so much of time's error, of one more than its size.
+  const Value size = largest_part(S(S(1) + abs(from.slip)));
+  const S gained = (hoop.sin_slope - slide.friction * hoop.cos_slope) * clock.whole;
+  const Value by_time = larger(Value(Number(1)), Value(largest_part(gained) / size));
   const auto excess_of = [&](const Value& error) {
     return select(panel.indeterminate | panel.spin_vanishes, unsolved,
                   Value(error / (Value(tolerance_) + noise)));
   };
-  panel.excess = excess_of(largest<Value>({spin_error, Value(error_over_tail) * time_tail, slip.between}));
+  panel.excess = excess_of(largest<Value>(
+      {spin_error, Value(error_over_tail) * by_time * time_tail, Value(error_over_tail) * slip_tail / size}));
   panel.end_excess =
-      excess_of(largest<Value>({spin_error, integral_error(time_tail, Value(Number(1))), slip.at_end}));
+      excess_of(largest<Value>({spin_error, by_time * integral_error(time_tail, Value(Number(1)))}));
 }
 // NOLINTEND(readability-function-size)
 
 template <class S>
-auto SlidingPanels<S>::integrate_slip(const Slide& slide, const ContactState<S>& from, const AtNodes& at,
-                                      const AtEnd& start, const AtEnd& end, Panel& panel) const -> Errors {
-  using std::abs;
+void SlidingPanels<S>::fill_ends(const Slide& slide, const ContactState<S>& from, const AtEnd& start,
+                                 const AtEnd& end, Panel& panel) const {
   const Hoop<S>& hoop = slide.hoop;
-  const S way = select(panel.turned < S(0), S(-1), S(1));
+  const SlidingMomentum<S> momentum(hoop, slide.friction, start.phi, from.spin);
+  const S duration = panel.end.time - from.time;
+  panel.end.slip = from.slip + momentum.slip_gained(end.phi, panel.end.spin, duration);
+  panel.end.travel = from.travel + momentum.travelled(end.phi, duration, from.slip);
   const auto force_at = [&](const AtEnd& edge) {
     const S angular = edge.sliding.turn * edge.force + hoop.drive / hoop.Ic;
-    return Sample<S>{edge.force, way * edge.weight * free_normal_force_rate(hoop, edge.phi, edge.u, angular)};
+    return Sample<S>{edge.force, edge.turning * free_normal_force_rate(hoop, edge.phi, edge.u, angular)};
   };
   const auto slip_rate_at = [&](const AtEnd& edge) {
     return edge.time_rate *
            sliding_motion(hoop, edge.phi, edge.u, slide.friction, edge.sliding, edge.force).slip;
   };
   panel.free_force.start = force_at(start), panel.free_force.end = force_at(end);
-  const typename Grid::Integrated slips = grid_.integrated(panel.slip.rate);
-  Values slip_time;
-  for (std::size_t i = 0; i < nodes; ++i) {
-    panel.slip.value[i] = from.slip + slips.running[i];
-    slip_time[i] = panel.slip.value[i] * panel.time_rate[i];
-    panel.travel.rate[i] = way * at.weight[i] + slip_time[i];
-  }
-  const typename Grid::Integrated carries = grid_.integrated(slip_time);
-  for (std::size_t i = 0; i < nodes; ++i)
-    panel.travel.value[i] = from.travel + way * at.angle[i] + carries.running[i];
-  panel.end.slip = from.slip + slips.whole;
-  panel.end.travel = from.travel + panel.turned + carries.whole;
   panel.slip.start = {from.slip, slip_rate_at(start)};
   panel.slip.end = {panel.end.slip, slip_rate_at(end)};
-  panel.travel.start = {from.travel, way * start.weight + from.slip * start.time_rate};
-  panel.travel.end = {panel.end.travel, way * end.weight + panel.end.slip * end.time_rate};
-  const Value size = largest_part(S(S(1) + abs(from.slip)));
-  return {Value(error_over_tail) * slips.tail / size,
-          integral_error(slips.tail, Value(abs(value_of(slips.whole)))) / size};
+  panel.travel_start = {from.travel, start.turning + from.slip * start.time_rate};
+  panel.travel_end = {panel.end.travel, end.turning + panel.end.slip * end.time_rate};
+}
+
+template <class S>
+void SlidingPanels<S>::fill_nodes(const Slide& slide, const ContactState<S>& from, const AtNodes& at,
+                                  const Trig<S>& begun, Panel& panel) const {
+  constexpr std::size_t width = Grid::width;
+  const auto get = [](const Values& values, std::size_t i) { return Grid::at(values, i); };
+  const auto put = [](const T& value, Values& values, std::size_t i) { Grid::put(value, values, i); };
+  const Hoop<T> hoop = widened<T>(slide.hoop);
+  const T m(slide.friction);
+  const SlidingMomentum<T> momentum(hoop, m, {T(begun.sin), T(begun.cos), T(begun.versine)}, T(from.spin));
+  for (std::size_t i = 0; i < nodes; i += width) {
+    const Trig<T>& phi = at.phi[i / width];
+    const T w = get(panel.spin, i), u = w * w;
+    const SlidingMotion<T> motion =
+        sliding_motion(hoop, phi, u, m, at.sliding[i / width], get(panel.free_force.value, i));
+    put(get(at.turning, i) * free_normal_force_rate(hoop, phi, u, motion.angular), panel.free_force.rate, i);
+    put(T(from.slip) + momentum.slip_gained(phi, w, get(panel.elapsed, i)), panel.slip.value, i);
+    put(motion.slip * get(panel.time_rate, i), panel.slip.rate, i);
+  }
+}
+
+template <class S>
+auto SlidingPanels<S>::travel_on(const Panel& panel) const -> Course {
+  Course travel{panel.travel_start, {}, {}, panel.travel_end};
+  for (std::size_t i = 0; i < nodes; ++i)
+    travel.rate[i] = (panel.slip.value[i] + panel.spin[i]) * panel.time_rate[i];
+  travel.value = grid_.integrals(travel.rate);
+  for (S& value : travel.value) value += panel.travel_start.value;
+  return travel;
+}
+
+template <class S>
+auto SlidingPanels<S>::keeps_within(const S& runway, const ContactState<S>& from, const Panel& panel,
+                                    const PanelExtent<S>& slip) const -> Mask {
+  using std::abs;
+  const S fastest = larger(S(abs(slip.least)), S(abs(slip.most))) + slip.steepest * grid_.longest_spacing();
+  return abs(from.travel) + abs(panel.turned) + fastest * (panel.end.time - from.time) < runway;
 }
 
 template <class S>
@@ -254,17 +281,18 @@ auto SlidingPanels<S>::state_at(const Slide& slide, const ContactState<S>& from,
   ContactState<S>& at = inside.state;
   const S way = select(panel.turned < S(0), S(-1), S(1));
   at.angle += way * stretch.angle(place);
-  const Values times = grid_.integrals(panel.time_rate);
-  const auto [growth, driven, taken, slip, travel] = grid_.template values<5>(
-      {&panel.growth, &panel.driven, &times, &panel.slip.value, &panel.travel.value}, place);
+  const auto [growth, driven, elapsed] =
+      grid_.template values<3>({&panel.growth, &panel.driven, &panel.elapsed}, place);
   const S y = exponential(growth) * (panel.start_y + driven);
-  const S u = spin_squared(slide.hoop, trig(at.angle), y, panel.by_force);
+  const Trig<S> phi = trig(at.angle);
+  const S u = spin_squared(slide.hoop, phi, y, panel.by_force);
   inside.is_sharp =
       inside.is_sharp & (u > small * larger(S(from.spin * from.spin), S(panel.end.spin * panel.end.spin)));
   at.spin = way * sqrt(u);
-  at.time += taken;
-  at.slip = slip;
-  at.travel = travel;
+  at.time += elapsed;
+  const SlidingMomentum<S> momentum(slide.hoop, slide.friction, trig(from.angle), from.spin);
+  at.slip += momentum.slip_gained(phi, at.spin, elapsed);
+  at.travel += momentum.travelled(phi, elapsed, from.slip);
   return inside;
 }
 
@@ -278,7 +306,8 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
   const S& friction = slide.friction;
   panel.indeterminate = panel.spin_vanishes = false;
   panel.excess = std::numeric_limits<Number>::infinity();
-  Values turned, spin, angular;
+  Values turned, angular;
+  Values& spin = panel.spin;
   for (std::size_t i = 0; i < nodes; ++i)
     spin[i] = from.spin, turned[i] = from.spin * duration * grid_.node[i];
   bool settled = false;
@@ -341,23 +370,23 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
   panel.free_force.start = sample_force(start_phi, from.spin, start);
   panel.free_force.end = sample_force(end_phi, panel.end.spin, end);
   panel.slip.start = {from.slip, duration * start.slip};
-  panel.travel.start = {from.travel, duration * (from.slip + from.spin)};
-  const Values slipped = grid_.integrals(panel.slip.rate);
+  panel.time_rate.fill(duration);
+  const typename Grid::Integrated slipped = grid_.integrated(panel.slip.rate);
+  Values carried;
   for (std::size_t i = 0; i < nodes; ++i) {
-    panel.slip.value[i] = from.slip + slipped[i];
-    panel.travel.rate[i] = duration * (panel.slip.value[i] + spin[i]);
+    panel.slip.value[i] = from.slip + slipped.running[i];
+    carried[i] = duration * panel.slip.value[i];
   }
-  const Values travelled = grid_.integrals(panel.travel.rate);
-  for (std::size_t i = 0; i < nodes; ++i) panel.travel.value[i] = from.travel + travelled[i];
   panel.end.time = from.time + duration;
-  panel.end.slip = from.slip + grid_.integral(panel.slip.rate);
-  panel.end.travel = from.travel + grid_.integral(panel.travel.rate);
+  panel.end.slip = from.slip + slipped.whole;
+  panel.end.travel = from.travel + panel.turned + grid_.integral(carried);
   panel.slip.end = {panel.end.slip, duration * end.slip};
-  panel.travel.end = {panel.end.travel, duration * (panel.end.slip + panel.end.spin)};
+  panel.travel_start = {from.travel, duration * (from.slip + from.spin)};
+  panel.travel_end = {panel.end.travel, duration * (panel.end.slip + panel.end.spin)};
   if (settled)
     panel.excess = error_over_tail *
                    largest<Number>({grid_.tail(angular) / largest_part(S(S(1) + abs(from.spin))),
-                                    grid_.tail(panel.slip.rate) / largest_part(S(S(1) + abs(from.slip)))}) /
+                                    slipped.tail / largest_part(S(S(1) + abs(from.slip)))}) /
                    (tolerance_ + slide.rounding_at_end(at_end.pivot));
 }
 // NOLINTEND(readability-function-size)
@@ -369,6 +398,9 @@ template void SlidingPanels<Batch>::solve_by_angle(const Slide&, const ContactSt
                                                    Panel&) const;
 template auto SlidingPanels<Batch>::state_at(const Slide&, const ContactState<Batch>&, const Stretch&,
                                              const Panel&, const Batch&) const -> Inside;
+template auto SlidingPanels<Batch>::travel_on(const Panel&) const -> Course;
+template auto SlidingPanels<Batch>::keeps_within(const Batch&, const ContactState<Batch>&, const Panel&,
+                                                 const PanelExtent<Batch>&) const -> Mask;
 template class SlidingPanels<DesignDual>;
 template class SlidingPanels<StateDual>;
 #endif

@@ -14,7 +14,7 @@
 
 #include "friction/contact_phases.hpp"
 #include "hoop/painleve.hpp"
-#include "numerics/spectral.hpp"
+#include "numerics/panel_fall.hpp"
 
 namespace leapmap {
 
@@ -30,6 +30,8 @@ class SlidingPanels {
   /// What is taken for the error of an integral up to a place on a panel, over its integrand's tail. It is
   /// about a hundredth (numerics/spectral.hpp); the rest is room for errors that grow after it.
   static constexpr Number error_over_tail = Number(0.25);
+  /// Panels in lanes are far from any edge.
+  static constexpr bool has_edges = Lanes<S>::count == 1;
   using Grid = SpectralPanel<S, nodes>;
   using Values = typename Grid::Values;
 
@@ -41,9 +43,11 @@ class SlidingPanels {
   };
   /// What the nodes of a panel hold, in order of time, and its end.
   struct Panel {
-    Course slip, travel, free_force;
+    Course slip, free_force;
+    Values spin, time_rate;  ///< time's derivative by the panel's coordinate
+    Sample<S> travel_start, travel_end;
     // Of a panel by angle: y = e^growth (start_y + driven) is w^2 or, where it says so, n0.
-    Values growth, driven, driven_rate, time_rate;
+    Values growth, driven, driven_rate, elapsed;
     Sample<S> driven_start, driven_end;
     S start_y;
     bool by_force;
@@ -80,7 +84,7 @@ class SlidingPanels {
     template <class T>
     SlidingCoefficients<T> coefficients(const Hoop<T>& hoops, const Trig<T>& phi, const T& turned) const {
       const T m(friction);
-      if (!edge) return sliding_coefficients(hoops, phi, m);
+      if (!has_edges || !edge) return sliding_coefficients(hoops, phi, m);
       return sliding_coefficients(hoops, phi, m, edge->pivot(hoops, m, T(left) - T(edge->way) * turned));
     }
     /// Relative rounding of the accelerations where the pivot is so large: it comes of terms that may cancel.
@@ -92,7 +96,7 @@ class SlidingPanels {
     }
     /// The same at a panel's end: near the edge the pivot comes without cancellation.
     Value rounding_at_end(const S& pivot) const {
-      return rounding(edge ? Value(Number(1)) : value_of(pivot));
+      return rounding(has_edges && edge ? Value(Number(1)) : value_of(pivot));
     }
   };
 
@@ -132,6 +136,12 @@ class SlidingPanels {
       solve_by_time(slide, from, taken.duration, panel);
   }
 
+  /// The travel on a panel that is solved, and whether bounds say that it stays within a runway there. slip:
+  /// its extent.
+  Course travel_on(const Panel& panel) const;
+  Mask keeps_within(const S& runway, const ContactState<S>& from, const Panel& panel,
+                    const PanelExtent<S>& slip) const;
+
   const Grid& grid() const { return grid_; }
   Number tolerance() const { return tolerance_; }
 
@@ -142,17 +152,17 @@ class SlidingPanels {
   struct AtNodes {
     std::array<Trig<T>, nodes / Grid::width> phi;
     std::array<SlidingCoefficients<T>, nodes / Grid::width> sliding;
-    Values angle, weight;  ///< past its start, and its derivative by the panel's coordinate
+    Values turning;        ///< the angle's derivative by the panel's coordinate
     Values grows, drives;  ///< a and b of y' = a y + b, by that coordinate
     T least_pivot;         ///< of those in each lane
   };
   AtNodes at_nodes(const Slide& slide, const ContactState<S>& from, const Stretch& stretch, const S& way,
                    bool by_force) const;
-  /// And at one of its ends: w^2, n0, weight, and how fast time goes by the panel's coordinate.
+  /// And at one of its ends: w^2, n0, and how fast angle and time go by the panel's coordinate.
   struct AtEnd {
     Trig<S> phi;
     SlidingCoefficients<S> sliding;
-    S u, force, weight, time_rate;
+    S u, force, turning, time_rate;
   };
   /// The error of an integral over a panel whose nodes resolve a function to its tail. Where its Legendre
   /// coefficients fall like a geometric series, the first that Gauss's rule gets wrong are about the tail's
@@ -161,13 +171,11 @@ class SlidingPanels {
     const Value ten(Number(10)), least(std::numeric_limits<Number>::min());
     return ten * tail * tail / (larger(integral, Value(ten * tail)) + least);
   }
-  struct Errors {
-    Value between, at_end;  ///< at and between the nodes, and at the panel's end
-  };
-  /// Slip and travel of a panel whose spin and n0 are known, and n0 at its ends. Returns the slip's errors,
-  /// of one more than its size.
-  Errors integrate_slip(const Slide& slide, const ContactState<S>& from, const AtNodes& at,
-                        const AtEnd& start, const AtEnd& end, Panel& panel) const;
+  /// Slip, travel and n0 at the ends of a panel whose spin and time are known; slip and n0 at its nodes.
+  void fill_ends(const Slide& slide, const ContactState<S>& from, const AtEnd& start, const AtEnd& end,
+                 Panel& panel) const;
+  void fill_nodes(const Slide& slide, const ContactState<S>& from, const AtNodes& at, const Trig<S>& begun,
+                  Panel& panel) const;
 
   Number tolerance_;
   Grid grid_;

@@ -8,6 +8,10 @@
 ///   N = n0 Ic / (Ic + rho s q),   F = -m N,   phi'' = tau / Ic - n0 q / (Ic + rho s q).
 /// Both are linear in w^2: as a function of the angle u = w^2 obeys du/dphi = 2 phi'', a linear equation of
 /// first order. Where Ic + rho s q <= 0 the rigid-body equations have no answer or two (Painleve).
+///
+/// As F = -m N, the mass's momentum along the plane and m times that away from it, v + (1 - rho c) w and
+/// m rho s w, together gain sin(theta) - m cos(theta) a time unit. So slip and travel follow from angle, spin
+/// and time (SlidingMomentum).
 #pragma once
 
 #include "hoop/rolling.hpp"
@@ -76,5 +80,32 @@ SlidingMotion<T> sliding_motion(const Hoop<T>& hoop, const Trig<T>& phi, const T
   return sliding_motion(hoop, phi, spin_squared, friction, sliding_coefficients(hoop, phi, friction),
                         free_normal_force(hoop, phi, spin_squared));
 }
+
+/// The sum of momenta that gains evenly while a hoop slides one way, from a state on.
+template <class T>
+struct SlidingMomentum {
+  T rho, friction, clearance, gain;
+  T turning, swung;  ///< at that state
+
+  SlidingMomentum(const Hoop<T>& hoop, const T& m, const Trig<T>& phi, const T& spin)
+      : rho(hoop.rho),
+        friction(m),
+        clearance(hoop.clearance),
+        gain(hoop.sin_slope - m * hoop.cos_slope),
+        turning(reach(phi) * spin),
+        swung(swing(phi)) {}
+
+  /// What slip and travel have gained a time later; slip: at that state.
+  T slip_gained(const Trig<T>& phi, const T& spin, const T& time) const {
+    return gain * time + (turning - reach(phi) * spin);
+  }
+  T travelled(const Trig<T>& phi, const T& time, const T& slip) const {
+    return time * (slip + turning + T(ScalarOf<T>(0.5)) * gain * time) + (swing(phi) - swung);
+  }
+
+ private:
+  T reach(const Trig<T>& phi) const { return clearance + rho * (phi.versine + friction * phi.sin); }
+  T swing(const Trig<T>& phi) const { return rho * (phi.sin + friction * phi.cos); }
+};
 
 }  // namespace leapmap

@@ -29,8 +29,8 @@ struct Lanes {
   static void store(const T& value, T* to) { *to = value; }
   /// One bit a lane, lane 0 lowest.
   static unsigned bits(bool mask) { return mask; }
-  /// `first`, then all lanes but the last.
-  static T moved_up(const T& first, const T&) { return first; }
+  /// The last lane of `before`, then all lanes but the last.
+  static T moved_up(const T& before, const T&) { return before; }
   /// 64 bits a lane.
   using Word = std::uint64_t;
   /// Sets the marks in the lanes of the mask.
@@ -55,21 +55,21 @@ struct Lanes<xsimd::batch<S, A>> {
     return word | xsimd::bitwise_cast<Word>(xsimd::select(mask, xsimd::bitwise_cast<B>(Word(marks)), B(0)));
   }
   static void store(const Word& word, std::uint64_t* to) { word.store_unaligned(to); }
-  static xsimd::batch<S, A> moved_up(const S& first, const xsimd::batch<S, A>& value) {
+  static xsimd::batch<S, A> moved_up(const xsimd::batch<S, A>& before, const xsimd::batch<S, A>& value) {
     // Through memory the load would wait for both stores.
 #ifdef __AVX512F__
     if constexpr (count == 8 && sizeof(S) == 8)
-      return {_mm512_castsi512_pd(_mm512_alignr_epi64(_mm512_castpd_si512(value.data),
-                                                      _mm512_castpd_si512(_mm512_set1_pd(first)), 7))};
+      return {_mm512_castsi512_pd(
+          _mm512_alignr_epi64(_mm512_castpd_si512(value.data), _mm512_castpd_si512(before.data), 7))};
 #endif
 #ifdef __AVX2__
     if constexpr (count == 4 && sizeof(S) == 8)
-      return {_mm256_blend_pd(_mm256_permute4x64_pd(value.data, 0b10'01'00'00), _mm256_set1_pd(first), 1)};
+      return {_mm256_permute4x64_pd(_mm256_blend_pd(value.data, before.data, 0b1000), 0b10'01'00'11)};
 #endif
-    std::array<S, count + 1> lanes;
-    lanes[0] = first;
-    store(value, lanes.data() + 1);
-    return load(lanes.data());
+    std::array<S, 2 * count> lanes;
+    store(before, lanes.data());
+    store(value, lanes.data() + count);
+    return load(lanes.data() + count - 1);
   }
   static unsigned bits(const Mask& mask) {
 #ifdef __AVX512F__
@@ -110,10 +110,10 @@ LaneArray<T> lanes_of(const T& value) {
   return lanes;
 }
 
-/// `first`, then all lanes but the last.
+/// The last lane of `before`, then all lanes but the last.
 template <class T>
-T moved_up(const ScalarOf<T>& first, const T& value) {
-  return Lanes<T>::moved_up(first, value);
+T moved_up(const T& before, const T& value) {
+  return Lanes<T>::moved_up(before, value);
 }
 
 /// number_of(i) in lane i.

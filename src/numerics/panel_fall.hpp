@@ -117,7 +117,7 @@ PanelFall<S> first_fall(const SpectralPanel<S, n>& panel, const typename Spectra
       if (at(b * S(0.5)).value > S(0)) return {polish(b * S(0.5), b, b * S(0.75)), false};
   if (starts_at_zero && (!(values[0] > S(0)) || first.rate * panel.node[0] < -slack))
     return {std::numeric_limits<S>::epsilon(), false};
-  const S bend = panel.fourth_derivative_bound(values);
+  const S bend = panel.roughness(values).fourth;
   bool unsure = false;
   int looks_left = 2'000;  // a function that keeps within the slack of zero is never told for sure
   // Whether the dip that is entered between a and b turns before it is deeper than the slack.
@@ -176,14 +176,15 @@ struct PlainFall {
 };
 
 /// The same as first_fall, of lanes where the first interval in which the cubic comes near zero holds a plain
-/// fall through it. Lanes outside `asked` return anything.
+/// fall through it. bend: a bound of the functions' fourth derivatives. Lanes outside `asked` return
+/// anything.
 template <class T, std::size_t n>
 PlainFall<T> plain_fall(const SpectralPanel<T, n>& panel, const typename SpectralPanel<T, n>::Values& values,
                         const typename SpectralPanel<T, n>::Values& rates, const Sample<T>& first,
-                        const Sample<T>& last, const T& slack, const MaskOf<T>& asked) {
+                        const Sample<T>& last, const T& bend, const T& slack, const MaskOf<T>& asked) {
   using std::abs;
   using S = ScalarOf<T>;
-  const T zero(S(0)), third(S(1) / S(3)), bend = panel.fourth_derivative_bound(values) * T(S(1) / S(288));
+  const T zero(S(0));
   const MaskOf<T> starts_at_zero = !(first.value > zero);
   const MaskOf<T> rises = (first.rate > zero) & (values[0] > zero);
   MaskOf<T> looking = asked & ((first.value > zero) | rises);
@@ -191,16 +192,16 @@ PlainFall<T> plain_fall(const SpectralPanel<T, n>& panel, const typename Spectra
   T from(S(0)), to(S(1));
   Sample<T> at_from = first, at_to = last;
   for (std::size_t i = 0; i <= n && any(looking); ++i) {
-    const T a(i == 0 ? S(0) : panel.node[i - 1]), b(i == n ? S(1) : panel.node[i]), h = b - a;
+    const T third(panel.third[i]), error = bend * T(panel.bent[i]);
     const Sample<T> at_a = i == 0 ? first : Sample<T>{values[i - 1], rates[i - 1]},
                     at_b = i == n ? last : Sample<T>{values[i], rates[i]};
-    const T inner_a = at_a.value + h * at_a.rate * third, inner_b = at_b.value - h * at_b.rate * third;
-    const T square = h * h, error = bend * square * square;
+    const T inner_a = at_a.value + third * at_a.rate, inner_b = at_b.value - third * at_b.rate;
     MaskOf<T> near = looking & !((at_b.value > zero) & (smaller(inner_a, inner_b) > error + slack));
     if (i == 0) near = near & !starts_at_zero;
     if (!any(near)) continue;
     looking = looking & !near;
-    from = select(near, a, from), to = select(near, b, to);
+    from = select(near, T(i == 0 ? S(0) : panel.node[i - 1]), from);
+    to = select(near, T(i == n ? S(1) : panel.node[i]), to);
     at_from = {select(near, at_a.value, at_from.value), select(near, at_a.rate, at_from.rate)};
     at_to = {select(near, at_b.value, at_to.value), select(near, at_b.rate, at_to.rate)};
     const T least_fall = smaller(smaller(at_a.value - inner_a, inner_a - inner_b), inner_b - at_b.value);

@@ -35,6 +35,9 @@ struct SpectralPanel {
       expansion;               ///< Legendre coefficient k of the j-th cardinal polynomial is expansion[j][k]
   Numbers last, last_but_one;  ///< the last two, by j
   Numbers fourth;              ///< fourth derivatives of Legendre's polynomials at 1
+  /// From each knot to the next, the knots being both ends and the nodes: a third of the way h, and what a
+  /// cubic's inner coefficients in Bernstein's form may be off by for a fourth derivative of 1, h^4 / 288.
+  std::array<Number, n + 1> third, bent;
 
   SpectralPanel() {
     const GaussRule<long double> rule = gauss_rule<long double>(n);
@@ -54,6 +57,10 @@ struct SpectralPanel {
       long double product = k < 4 ? 0 : 1;  // (k + 4)! / (k - 4)!
       for (std::size_t m = k < 4 ? 0 : k - 3; m <= k + 4; ++m) product *= static_cast<long double>(m);
       fourth[k] = Number(product / 24);
+    }
+    for (std::size_t k = 0; k <= n; ++k) {
+      const long double h = (k == n ? 1 : rule.node[k]) - (k == 0 ? 0 : rule.node[k - 1]);
+      third[k] = Number(h / 3), bent[k] = Number(h * h * h * h / 288);
     }
     for (std::size_t j = 0; j < n; ++j) {
       const auto at_j = legendre(rule.node[j]);
@@ -81,7 +88,8 @@ struct SpectralPanel {
     if constexpr (width > 1) {
       return product(running, f);
     } else {
-      return integrals(fold(f));
+      const Folded folded = fold(f);
+      return integrals(folded, dot(weight, folded.sum));
     }
   }
   /// Integral of f over the panel.
@@ -97,7 +105,8 @@ struct SpectralPanel {
       return {integrals(f), integral(f), tail(f)};
     } else {
       const Folded folded = fold(f);
-      return {integrals(folded), dot(weight, folded.sum), tail(folded)};
+      const S whole = dot(weight, folded.sum);
+      return {integrals(folded, whole), whole, tail(folded)};
     }
   }
   /// f's values at node i and at as many after it as a T holds.
@@ -126,45 +135,63 @@ struct SpectralPanel {
   /// Several functions at x in [0, 1], by the barycentric formula, for little more than one of them costs.
   template <std::size_t count>
   std::array<S, count> values(const std::array<const Values*, count>& functions, const S& x) const {
+    const T zero(Number(0));
     std::array<T, count> above;
-    above.fill(T(Number(0)));
-    T below(Number(0));
-    for (std::size_t i = 0; i < n; i += width) {
-      const T away = T(x) - shared(node, i);
-      // On a node its share is all but the whole.
-      const T share =
-          shared(barycentric, i) * reciprocal(select(away == T(Number(0)), T(Number(1e-290)), away));
-      for (std::size_t k = 0; k < count; ++k) above[k] += share * at(*functions[k], i);
-      below += share;
-    }
+    T below;
+    // nearest: what stands for no way at all. On a node its share is all but the whole.
+    const auto add_up = [&](const auto& away_from) {
+      above.fill(zero), below = zero;
+      for (std::size_t i = 0; i < n; i += width) {
+        const T share = shared(barycentric, i) * reciprocal(away_from(i));
+        for (std::size_t k = 0; k < count; ++k) above[k] += share * at(*functions[k], i);
+        below += share;
+      }
+    };
+    add_up([&](std::size_t i) { return T(x) - shared(node, i); });
+    if (!all(below - below == zero))
+      add_up([&](std::size_t i) {
+        const T away = T(x) - shared(node, i);
+        return select(away == zero, T(Number(1e-290)), away);
+      });
     std::array<S, count> told;
     for (std::size_t k = 0; k < count; ++k) told[k] = sum(above[k]) / sum(below);
     return told;
   }
   /// The longest way between neighbours among the nodes and both ends.
   Number longest_spacing() const { return node[n / 2] - node[n / 2 - 1]; }
-  /// A bound of f's fourth derivative: that of a Legendre polynomial is largest at the panel's ends.
-  S fourth_derivative_bound(const Values& f) const {
+  /// A bound of f's fourth derivative, as that of a Legendre polynomial is largest at the panel's ends, and
+  /// f's tail.
+  struct Roughness {
+    S fourth;
+    ValueOf<S> tail;
+  };
+  Roughness roughness(const Values& f) const {
     using std::abs;
-    T bound(Number(0));
     if constexpr (width > 1) {
+      T bound(Number(0));
       const Values coefficients = product(expansion, f);
       for (std::size_t k = 0; k < n; k += width)
         bound += times(fourth.data() + k, T(abs(at(coefficients, k))));
+      return {sum(bound), tail(f)};
     } else {
+      // Of the first four there is no such derivative; and no sum waits for all those before it.
+      constexpr std::size_t some = (n - 4) % 10 == 0 ? 10 : 2;
       const Folded folded = fold(f);
-      for (std::size_t first = 0; first < n; first += 2 * rows) {
-        std::array<S, 2 * rows> coefficients;
+      std::array<S, 2> bounds;
+      bounds.fill(S(Number(0)));
+      std::array<S, some> coefficients;
+      for (std::size_t first = 4; first < n; first += some) {
         coefficients.fill(S(Number(0)));
         for (std::size_t j = 0; j < half; ++j)
-          for (std::size_t k = 0; k < 2 * rows; ++k)
+          for (std::size_t k = 0; k < some; ++k)
             coefficients[k] +=
                 times(&expansion[j][first + k], k % 2 == 0 ? folded.sum[j] : folded.difference[j]);
-        for (std::size_t k = 0; k < 2 * rows; ++k)
-          bound += times(fourth.data() + first + k, S(abs(coefficients[k])));
+        for (std::size_t k = 0; k < some; ++k)
+          bounds[k % 2] += times(fourth.data() + first + k, S(abs(coefficients[k])));
       }
+      return {bounds[0] + bounds[1],
+              larger(largest_part(coefficients[some - 2]), largest_part(coefficients[some - 1]))};
     }
-    return sum(bound);
   }
   /// The larger of f's last two Legendre coefficients, about the error of values between the nodes. Integrals
   /// up to a place are off by about 1 / (4 n) of it. Where f is of size 1, the integral over the panel is off
@@ -189,8 +216,7 @@ struct SpectralPanel {
       folded.sum[j] = f[j] + f[n - 1 - j], folded.difference[j] = f[j] - f[n - 1 - j];
     return folded;
   }
-  Values integrals(const Folded& f) const {
-    const S whole = dot(weight, f.sum);
+  Values integrals(const Folded& f, const S& whole) const {
     Values values;
     for (std::size_t first = 0; first < half; first += rows) {
       std::array<S, rows> even, odd;  // about the panel's middle, of f

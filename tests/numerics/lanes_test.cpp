@@ -21,10 +21,12 @@ TEST(Lanes, BitsTellEachLaneOfAMask) {
   EXPECT_EQ(Lanes<double>::bits(true), 1u);
 }
 
-TEST(Lanes, MovedUpTheFirstLaneIsNew) {
-  LaneArray<Batch> lanes;
-  for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i] = static_cast<double>(i + 1);
-  const auto moved = lanes_of(moved_up(0.0, Lanes<Batch>::load(lanes.data())));
+TEST(Lanes, MovedUpTheFirstLaneIsTheLastOfThoseBefore) {
+  LaneArray<Batch> before, lanes;
+  for (std::size_t i = 0; i < lanes.size(); ++i)
+    before[i] = static_cast<double>(i) - static_cast<double>(lanes.size() - 1),
+    lanes[i] = static_cast<double>(i + 1);
+  const auto moved = lanes_of(moved_up(Lanes<Batch>::load(before.data()), Lanes<Batch>::load(lanes.data())));
   for (std::size_t i = 0; i < moved.size(); ++i) EXPECT_EQ(moved[i], static_cast<double>(i));
   EXPECT_EQ(moved_up(3.0, 5.0), 3.0);
 }

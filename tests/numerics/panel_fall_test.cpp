@@ -82,7 +82,7 @@ TEST(Spectral, TheFourthDerivativeIsBounded) {
   Panel::Values values;
   for (const double k : {0.5, 2.0, 6.0}) {
     for (std::size_t i = 0; i < n; ++i) values[i] = std::sin(k * panel.node[i] + 0.3);
-    const double bound = panel.fourth_derivative_bound(values);
+    const double bound = panel.roughness(values).fourth;
     EXPECT_GT(bound, std::pow(k, 4) * 0.3) << "no less than the largest there is";
     EXPECT_LT(bound, std::pow(k, 4) * 30.0 + 1e-3) << "and of use";
   }
@@ -108,8 +108,8 @@ TEST(Spectral, IntegralsInLanesAreThoseOfOnePanel) {
   for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(lanes_of(many.running[i])[last], one.running[i], roundings);
   EXPECT_NEAR(lanes_of(many.whole)[last], one.whole, roundings);
   EXPECT_NEAR(lanes_of(many.tail)[last], one.tail, 10.0 * roundings);
-  EXPECT_NEAR(lanes_of(wide.fourth_derivative_bound(in_lanes))[last] / panel.fourth_derivative_bound(values),
-              1.0, 1e-9);  // coefficients of 1e-15 by up to 1e7
+  EXPECT_NEAR(lanes_of(wide.roughness(in_lanes).fourth)[last] / panel.roughness(values).fourth, 1.0,
+              1e-9);  // coefficients of 1e-15 by up to 1e7
   // The integral itself, e^x (cos y + 5 sin y) / 26, y = 5 x + 0.3.
   const auto primitive = [](double x) {
     return std::exp(x) * (std::cos(5.0 * x + 0.3) + 5.0 * std::sin(5.0 * x + 0.3)) / 26.0;
@@ -176,8 +176,8 @@ TEST(PlainFall, InLanesItIsWhereOnePanelAloneHasIt) {
     Wide::Values values, rates;
     for (std::size_t i = 0; i < n; ++i)
       values[i] = in_lanes(wide.node[i]).value, rates[i] = in_lanes(wide.node[i]).rate;
-    const auto told =
-        plain_fall(wide, values, rates, in_lanes(0.0), in_lanes(1.0), Batch(1e-12), Batch(0.0) == Batch(0.0));
+    const auto told = plain_fall(wide, values, rates, in_lanes(0.0), in_lanes(1.0),
+                                 wide.roughness(values).fourth, Batch(1e-12), Batch(0.0) == Batch(0.0));
     const unsigned is_plain = Lanes<Batch>::bits(told.is_plain);
     const auto places = lanes_of(told.place);
     for (std::size_t lane = 0; lane < width; ++lane) {
