@@ -49,46 +49,46 @@ class Seeded {
 /// What moves in contact: angle, spin, travel, slip.
 template <class S>
 using Moving = std::array<S, 4>;
+/// What is integrated of it, angle and spin; travel and slip follow from them and the time.
+template <class S>
+using Turning = std::array<S, 2>;
 
 template <class S>
-Moving<S> stepped(const Moving<S>& from, const Moving<S>& rate, double by) {
-  Moving<S> to;
-  for (std::size_t i = 0; i < to.size(); ++i) to[i] = from[i] + rate[i] * by;
-  return to;
+Turning<S> stepped(const Turning<S>& from, const Turning<S>& rate, double by) {
+  return {from[0] + rate[0] * by, from[1] + rate[1] * by};
 }
 
 /// Gragg's midpoint steps over a span, so many.
 template <class S, class Rate>
-Moving<S> midpoint_steps(const Moving<S>& from, double span, int count, const Rate& rate) {
+Turning<S> midpoint_steps(const Turning<S>& from, double span, int count, const Rate& rate) {
   const double h = span / count;
-  Moving<S> before = from, at = stepped(from, rate(from), h);
+  Turning<S> before = from, at = stepped(from, rate(from), h);
   for (int k = 1; k < count; ++k) {
-    const Moving<S> next = stepped(before, rate(at), 2.0 * h);
+    const Turning<S> next = stepped(before, rate(at), 2.0 * h);
     before = at, at = next;
   }
-  const Moving<S> last = stepped(before, rate(at), h);
+  const Turning<S> last = stepped(before, rate(at), h);
   for (std::size_t i = 0; i < at.size(); ++i) at[i] = (at[i] + last[i]) * 0.5;
   return at;
 }
 
 /// Over a span of time by extrapolation, in halves where that does not agree with itself.
 template <class S, class Rate>
-Moving<S> integrated(const Moving<S>& from, double span, const Rate& rate, double allowed, long& budget,
-                     int depth = 0) {
+Turning<S> integrated(const Turning<S>& from, double span, const Rate& rate, double allowed, long& budget,
+                      int depth = 0) {
   constexpr std::array counts{2, 4, 6, 8, 10};
   constexpr double longest = 0.3;
   constexpr int most_halvings = 30;
   if (--budget < 0) {  // nothing to be followed: it is not told
-    Moving<S> lost;
-    lost.fill(S(std::numeric_limits<double>::quiet_NaN()));
-    return lost;
+    const S lost(std::numeric_limits<double>::quiet_NaN());
+    return {lost, lost};
   }
   const auto halved = [&] {
     return integrated(integrated(from, 0.5 * span, rate, allowed, budget, depth + 1), 0.5 * span, rate,
                       allowed, budget, depth + 1);
   };
   if (span > longest && depth < most_halvings) return halved();
-  std::array<Moving<S>, counts.size()> before, row;
+  std::array<Turning<S>, counts.size()> before, row;
   for (std::size_t k = 0; k < counts.size(); ++k) {
     row[0] = midpoint_steps(from, span, counts[k], rate);
     for (std::size_t j = 1; j <= k; ++j) {  // Neville, in squares of the step
@@ -120,16 +120,24 @@ class Walk {
     at_ = {design.parameter(by_release_angle), design.parameter(by_release_spin), S(0.0), S(0.0)};
   }
 
-  /// Goes through a phase from one time to another; take(time) is called at those between.
+  /// Goes through a phase from one time to another, and adds where it is at those between.
   void contact(Phase phase, int direction, double from, double to, std::span<const double> times,
                std::vector<MotionAt<S>>& taken) {
     const auto rate = rate_of(phase, direction);
+    const auto turning_rate = [&](const Turning<S>& at) -> Turning<S> {
+      const Moving<S> rates = rate({at[0], at[1], S(0.0), S(0.0)});
+      return {rates[0], rates[1]};
+    };
+    const auto since = moving_since(phase, direction, at_);
+    Turning<S> turning{at_[0], at_[1]};
     double time = from;
     for (const double sample : times) {
       if (!rests_) {
-        const Moving<S> next = integrated(at_, sample - time, rate, accuracy_, budget_);
+        const Turning<S> next = integrated(turning, sample - time, turning_rate, accuracy_, budget_);
         rests_ = value_of(next[1]) * value_of(hoop_.resistance) < 0.0;
-        at_ = rests_ ? at_rest(at_, sample - time, rate) : next;
+        const double span = rests_ ? span_to_rest(turning, sample - time, turning_rate) : sample - time;
+        turning = rests_ ? integrated(turning, span, turning_rate, accuracy_, budget_) : next;
+        at_ = since(turning, time + span - from);
       }
       time = sample;
       if (rests_) {
@@ -139,7 +147,8 @@ class Walk {
       const Moving<S> rates = rate(at_);
       taken.push_back({at_[0], at_[2], S(0.0), at_[1], value_of(rates[2]), 0.0, value_of(rates[1])});
     }
-    if (std::isfinite(to)) at_ = integrated(at_, to - time, rate, accuracy_, budget_);
+    if (std::isfinite(to))
+      at_ = since(integrated(turning, to - time, turning_rate, accuracy_, budget_), to - from);
   }
   /// Ends a phase of contact where the next one begins.
   void end_contact(Phase phase, int direction, Phase next) {
@@ -192,10 +201,22 @@ class Walk {
           return {at[1], motion.angular, at[3] + at[1], motion.slip};
         };
   }
-  /// Where within a span of time the spin is used up: against a resistance the hoop stays there. Its angle
+  /// What moves some time after the state that a phase begins at, by angle and spin then.
+  auto moving_since(Phase phase, int direction, const Moving<S>& begun) const {
+    const S friction = contact_.mu_kinetic * static_cast<double>(direction);
+    return [begun, rolls = phase == Phase::rolling,
+            momentum = SlidingMomentum<S>(hoop_, friction, trig(begun[0]), begun[1])](
+               const Turning<S>& at, double time) -> Moving<S> {
+      if (rolls) return {at[0], at[1], begun[2] + (at[0] - begun[0]), S(0.0)};
+      const Trig<S> phi = trig(at[0]);
+      return {at[0], at[1], begun[2] + momentum.travelled(phi, S(time), begun[3]),
+              begun[3] + momentum.slip_gained(phi, at[1], S(time))};
+    };
+  }
+  /// How far into a span of time the spin is used up: against a resistance the hoop stays there. Its angle
   /// has no derivative by the time of that.
   template <class Rate>
-  Moving<S> at_rest(const Moving<S>& from, double span, const Rate& rate) {
+  double span_to_rest(const Turning<S>& from, double span, const Rate& rate) {
     constexpr int halvings = 50;
     double low = 0.0, high = span;
     for (int i = 0; i < halvings; ++i) {
@@ -204,7 +225,7 @@ class Walk {
           value_of(integrated(from, middle, rate, accuracy_, budget_)[1]) * value_of(hoop_.resistance) < 0.0;
       (past ? high : low) = middle;
     }
-    return integrated(from, low, rate, accuracy_, budget_);
+    return low;
   }
   static Moving<S> moved(const Moving<S>& from, const Moving<S>& rate, const S& by) {
     Moving<S> to;

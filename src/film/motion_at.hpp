@@ -42,10 +42,10 @@ inline constexpr auto by_every_parameter = [] {
 /// landing of the jump, or the search's end, the last phase goes on for ever: a flight goes on through the
 /// plane.
 ///
-/// Phases and their ends are the exact solver's. Between them, where the state is no closed form of the time,
-/// the equations are integrated by extrapolation of midpoint steps, to the accuracy; a phase's end gets its
-/// derivatives by one Newton step of what is zero there. Derivatives by mu_kinetic are added to those by
-/// mu_static where it follows that.
+/// Phases and their ends are the exact solver's. Between them, in contact, angle and spin are integrated by
+/// extrapolation of midpoint steps, to the accuracy; all else follows from these and the time. A phase's end
+/// gets its derivatives by one Newton step of what is zero there. Derivatives by mu_kinetic are added to
+/// those by mu_static where it follows that.
 ///
 /// by: the places among `differentiable` of the parameters that derivatives are by, in their order in S.
 template <class S>

@@ -100,12 +100,13 @@ auto SlidingLanes<T>::first_events(const InLanes& slides, const MaskOf<T>& asked
     for (std::size_t i = 0; i < width; ++i)
       if (bits >> i & 1u) events.end[i] = end;
   };
-  // The same for offset + factor times a course, factor 1 or -1.
+  // Where offset + factor times a course falls through zero, factor 1 or -1.
   const auto look_past = [&](PhaseEnd end, const T& offset, const T& factor, const Course& course,
                              const PanelExtent<T>& of_course, const MaskOf<T>& of_lanes) {
     const PanelExtent<T> of_guard = of_course.of(offset, factor);
     const MaskOf<T> near = of_lanes & !is_clear_of_zero(grid, of_guard);
     if (!any(near)) return;
+    if (all((offset == T(S(0))) & (factor == T(S(1))))) return look(end, course, of_guard, near);
     const auto sample = [&](const Sample<T>& at) {
       return Sample<T>{offset + factor * at.value, factor * at.rate};
     };
@@ -116,9 +117,8 @@ auto SlidingLanes<T>::first_events(const InLanes& slides, const MaskOf<T>& asked
     look(end, guard, of_guard, near);
   };
   const T zero(S(0)), one(S(1));
-  const PanelExtent<T> force = extent(panel_.free_force), slip = extent(panel_.slip);
-  const MaskOf<T> lifting = asked & !is_clear_of_zero(grid, force);
-  if (any(lifting)) look(PhaseEnd::lifts_off, panel_.free_force, force, lifting);
+  const PanelExtent<T> slip = extent(panel_.slip);
+  look_past(PhaseEnd::lifts_off, zero, one, panel_.free_force, extent(panel_.free_force), asked);
   look_past(PhaseEnd::slip_ends, zero, slides.direction, panel_.slip, slip, asked);
   const MaskOf<T> far = asked & !panels_.keeps_within(slides.runway, slides.from, panel_, slip);
   if (!any(far)) return events;

@@ -54,7 +54,7 @@ auto SlidingPanels<S>::stretch_of(const S& spin, const S& rise, const S& length)
 
 template <class S>
 auto SlidingPanels<S>::at_nodes(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
-                                const S& way, bool by_force) const -> AtNodes {
+                                const S& way, bool by_force, Values& turning) const -> AtNodes {
   constexpr std::size_t width = Grid::width;
   const auto put = [](const T& value, Values& values, std::size_t i) { Grid::put(value, values, i); };
   const Hoop<T> hoop = widened<T>(slide.hoop);
@@ -65,7 +65,7 @@ auto SlidingPanels<S>::at_nodes(const Slide& slide, const ContactState<S>& from,
   for (std::size_t i = 0; i < nodes; i += width) {
     const T q = T(stretch.begin) + T(stretch.span) * Grid::shared(grid_.node, i);
     const T x = T(stretch.shift) + T(stretch.curve) * q * q;
-    put(q * T(S(2) * way * stretch.curve * stretch.span), nodes_at.turning, i);
+    put(q * T(S(2) * way * stretch.curve * stretch.span), turning, i);
     put(x, angle, i);
     nodes_at.phi[i / width] = trig(T(from.angle) + T(way) * x);
   }
@@ -77,8 +77,7 @@ auto SlidingPanels<S>::at_nodes(const Slide& slide, const ContactState<S>& from,
     nodes_at.sliding[i / width] = at;
     least = smaller(least, at.pivot);
     const T idle = hoop.cos_slope + raised * phi.sin;  // n0 at no spin
-    const T turned = Grid::at(nodes_at.turning, i), twice = T(S(2)) * turned,
-            by_force_alone = twice * at.turn;
+    const T turned = Grid::at(turning, i), twice = T(S(2)) * turned, by_force_alone = twice * at.turn;
     const T lever = hoop.rho * phi.cos;
     if (by_force) {
       const T tangent = phi.sin / phi.cos;
@@ -123,7 +122,7 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   const bool by_force = panel.by_force = has_edges && slide.edge &&
                                          all((slide.free_force < S(0.5) * hoop.cos_slope) &
                                              (start.phi.cos < farthest) & (end.phi.cos < farthest));
-  const AtNodes at = at_nodes(slide, from, stretch, way, by_force);
+  const AtNodes at = at_nodes(slide, from, stretch, way, by_force, panel.turning);
   panel.least_pivot =
       smaller(least_node<S, T>(at.least_pivot), value_of(S(smaller(start.sliding.pivot, end.sliding.pivot))));
   panel.indeterminate = !(panel.least_pivot > Value(Number(0)));
@@ -151,14 +150,15 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   const S fast(std::numeric_limits<Number>::max());
   T least_u(smaller(select(start.u > S(0), start.u, fast), select(rests, fast, end.u)));
   Values& time_rate = panel.time_rate;
+  Values squared;  // w^2
   for (std::size_t i = 0; i < nodes; i += width) {
     const Trig<T>& phi = at.phi[i / width];
     const T y = get(grown_by, i) * (T(start_y) + get(panel.driven, i));
     const T u = spin_squared(hoops, phi, y, by_force), inverse = T(way) * reciprocal_sqrt(u);
     least_u = smaller(least_u, u);
-    put(u * inverse, panel.spin, i);
+    put(u, squared, i);
     put(force(hoops, phi, y), panel.free_force.value, i);
-    put(get(at.turning, i) * inverse, time_rate, i);
+    put(get(panel.turning, i) * inverse, time_rate, i);
   }
   const Value slowest = least_node<S, T>(least_u);
   panel.spin_vanishes = !(slowest > Value(Number(0)));
@@ -181,40 +181,33 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   panel.end.spin = way * sqrt(end.u);
   end.time_rate = select(rests, time_rate[nodes - 1], S(end.turning / panel.end.spin));
   start.time_rate = select(start.u > S(0), S(start.turning / from.spin), time_rate[0]);
-  const typename Grid::Integrated clock = grid_.integrated(time_rate);
-  panel.elapsed = clock.running;
-  panel.end.time = from.time + clock.whole;
-  const Value time_tail = clock.tail / largest_part(clock.whole);
-  if constexpr (!has_derivatives<S>) fill_nodes(slide, from, at, start.phi, panel);
-  fill_ends(slide, from, start, end, panel);
-  Value slip_tail(Number(0));  // derivatives are asked for at a panel's end
-  if constexpr (!has_derivatives<S>) slip_tail = grid_.tail(panel.slip.rate);
+  const S duration = grid_.integral(time_rate);
+  panel.end.time = from.time + duration;
+  panel.sweep = length;
+  const Value time_tail = grid_.tail(time_rate) / largest_part(duration);
+  const Errors slip = slip_at_nodes(slide, from, at, squared, duration, time_tail, panel);
+  fill_ends(slide, from, start, end, duration, panel);
   // Beside the end at rest w^2 has few digits, and little effect.
   const Value lost =
       select(rests, Value(Number(1)), smaller(Value(value_of(start.u) / slowest), Value(Number(1e6))));
   const Value noise = roundings + Value(Number(16) * std::numeric_limits<Number>::epsilon()) * lost;
-  // Slip gains so much of time's error, of one more than its size.
-  const Value size = largest_part(S(S(1) + abs(from.slip)));
-  const S gained = (hoop.sin_slope - slide.friction * hoop.cos_slope) * clock.whole;
-  const Value by_time = larger(Value(Number(1)), Value(largest_part(gained) / size));
   const auto excess_of = [&](const Value& error) {
     return select(panel.indeterminate | panel.spin_vanishes, unsolved,
                   Value(error / (Value(tolerance_) + noise)));
   };
-  panel.excess = excess_of(largest<Value>(
-      {spin_error, Value(error_over_tail) * by_time * time_tail, Value(error_over_tail) * slip_tail / size}));
+  panel.excess = excess_of(largest<Value>({spin_error, Value(error_over_tail) * time_tail, slip.between}));
   panel.end_excess =
-      excess_of(largest<Value>({spin_error, by_time * integral_error(time_tail, Value(Number(1)))}));
+      excess_of(largest<Value>({spin_error, integral_error(time_tail, Value(Number(1))), slip.at_end}));
 }
 // NOLINTEND(readability-function-size)
 
 template <class S>
 void SlidingPanels<S>::fill_ends(const Slide& slide, const ContactState<S>& from, const AtEnd& start,
-                                 const AtEnd& end, Panel& panel) const {
+                                 const AtEnd& end, const S& duration, Panel& panel) const {
   const Hoop<S>& hoop = slide.hoop;
   const SlidingMomentum<S> momentum(hoop, slide.friction, start.phi, from.spin);
-  const S duration = panel.end.time - from.time;
-  panel.end.slip = from.slip + momentum.slip_gained(end.phi, panel.end.spin, duration);
+  if constexpr (has_derivatives<S>)  // else it is integrated
+    panel.end.slip = from.slip + momentum.slip_gained(end.phi, panel.end.spin, duration);
   panel.end.travel = from.travel + momentum.travelled(end.phi, duration, from.slip);
   const auto force_at = [&](const AtEnd& edge) {
     const S angular = edge.sliding.turn * edge.force + hoop.drive / hoop.Ic;
@@ -232,30 +225,43 @@ void SlidingPanels<S>::fill_ends(const Slide& slide, const ContactState<S>& from
 }
 
 template <class S>
-void SlidingPanels<S>::fill_nodes(const Slide& slide, const ContactState<S>& from, const AtNodes& at,
-                                  const Trig<S>& begun, Panel& panel) const {
-  constexpr std::size_t width = Grid::width;
-  const auto get = [](const Values& values, std::size_t i) { return Grid::at(values, i); };
-  const auto put = [](const T& value, Values& values, std::size_t i) { Grid::put(value, values, i); };
-  const Hoop<T> hoop = widened<T>(slide.hoop);
-  const T m(slide.friction);
-  const SlidingMomentum<T> momentum(hoop, m, {T(begun.sin), T(begun.cos), T(begun.versine)}, T(from.spin));
-  for (std::size_t i = 0; i < nodes; i += width) {
-    const Trig<T>& phi = at.phi[i / width];
-    const T w = get(panel.spin, i), u = w * w;
-    const SlidingMotion<T> motion =
-        sliding_motion(hoop, phi, u, m, at.sliding[i / width], get(panel.free_force.value, i));
-    put(get(at.turning, i) * free_normal_force_rate(hoop, phi, u, motion.angular), panel.free_force.rate, i);
-    put(T(from.slip) + momentum.slip_gained(phi, w, get(panel.elapsed, i)), panel.slip.value, i);
-    put(motion.slip * get(panel.time_rate, i), panel.slip.rate, i);
+auto SlidingPanels<S>::slip_at_nodes(const Slide& slide, const ContactState<S>& from, const AtNodes& at,
+                                     const Values& squared, const S& duration, const Value& time_tail,
+                                     Panel& panel) const -> Errors {
+  using std::abs;
+  const Value size = largest_part(S(S(1) + abs(from.slip)));
+  if constexpr (has_derivatives<S>) {  // asked for at a panel's end, where slip has so much of time's error
+    const S gained = (slide.hoop.sin_slope - slide.friction * slide.hoop.cos_slope) * duration;
+    const Value error = largest_part(gained) / size * time_tail;
+    return {Value(error_over_tail) * error, error};
+  } else {
+    constexpr std::size_t width = Grid::width;
+    const auto get = [](const Values& values, std::size_t i) { return Grid::at(values, i); };
+    const auto put = [](const T& value, Values& values, std::size_t i) { Grid::put(value, values, i); };
+    const Hoop<T> hoop = widened<T>(slide.hoop);
+    const T m(slide.friction);
+    for (std::size_t i = 0; i < nodes; i += width) {
+      const Trig<T>& phi = at.phi[i / width];
+      const T u = get(squared, i);
+      const SlidingMotion<T> motion =
+          sliding_motion(hoop, phi, u, m, at.sliding[i / width], get(panel.free_force.value, i));
+      put(get(panel.turning, i) * free_normal_force_rate(hoop, phi, u, motion.angular), panel.free_force.rate,
+          i);
+      put(motion.slip * get(panel.time_rate, i), panel.slip.rate, i);
+    }
+    const typename Grid::Integrated slips = grid_.integrated(panel.slip.rate);
+    for (std::size_t i = 0; i < nodes; ++i) panel.slip.value[i] = from.slip + slips.running[i];
+    panel.end.slip = from.slip + slips.whole;
+    return {Value(error_over_tail) * slips.tail / size,
+            integral_error(slips.tail, Value(abs(value_of(slips.whole)))) / size};
   }
 }
 
 template <class S>
-auto SlidingPanels<S>::travel_on(const Panel& panel) const -> Course {
+auto SlidingPanels<S>::travel_on(const Panel& panel) const -> Course requires(!has_derivatives<S>) {
   Course travel{panel.travel_start, {}, {}, panel.travel_end};
   for (std::size_t i = 0; i < nodes; ++i)
-    travel.rate[i] = (panel.slip.value[i] + panel.spin[i]) * panel.time_rate[i];
+    travel.rate[i] = panel.turning[i] + panel.slip.value[i] * panel.time_rate[i];
   travel.value = grid_.integrals(travel.rate);
   for (S& value : travel.value) value += panel.travel_start.value;
   return travel;
@@ -263,10 +269,10 @@ auto SlidingPanels<S>::travel_on(const Panel& panel) const -> Course {
 
 template <class S>
 auto SlidingPanels<S>::keeps_within(const S& runway, const ContactState<S>& from, const Panel& panel,
-                                    const PanelExtent<S>& slip) const -> Mask {
+                                    const PanelExtent<S>& slip) const -> Mask requires(!has_derivatives<S>) {
   using std::abs;
   const S fastest = larger(S(abs(slip.least)), S(abs(slip.most))) + slip.steepest * grid_.longest_spacing();
-  return abs(from.travel) + abs(panel.turned) + fastest * (panel.end.time - from.time) < runway;
+  return abs(from.travel) + panel.sweep + fastest * (panel.end.time - from.time) < runway;
 }
 
 template <class S>
@@ -281,8 +287,13 @@ auto SlidingPanels<S>::state_at(const Slide& slide, const ContactState<S>& from,
   ContactState<S>& at = inside.state;
   const S way = select(panel.turned < S(0), S(-1), S(1));
   at.angle += way * stretch.angle(place);
-  const auto [growth, driven, elapsed] =
-      grid_.template values<3>({&panel.growth, &panel.driven, &panel.elapsed}, place);
+  const Values times = grid_.integrals(panel.time_rate);
+  // Duals hold no slip at the nodes: theirs follows from spin and time.
+  constexpr std::size_t count = has_derivatives<S> ? 3 : 4;
+  std::array<const Values*, count> functions{&panel.growth, &panel.driven, &times};
+  if constexpr (!has_derivatives<S>) functions[3] = &panel.slip.value;
+  const std::array<S, count> there = grid_.template values<count>(functions, place);
+  const auto &growth = there[0], &driven = there[1], &elapsed = there[2];
   const S y = exponential(growth) * (panel.start_y + driven);
   const Trig<S> phi = trig(at.angle);
   const S u = spin_squared(slide.hoop, phi, y, panel.by_force);
@@ -291,7 +302,10 @@ auto SlidingPanels<S>::state_at(const Slide& slide, const ContactState<S>& from,
   at.spin = way * sqrt(u);
   at.time += elapsed;
   const SlidingMomentum<S> momentum(slide.hoop, slide.friction, trig(from.angle), from.spin);
-  at.slip += momentum.slip_gained(phi, at.spin, elapsed);
+  if constexpr (has_derivatives<S>)
+    at.slip += momentum.slip_gained(phi, at.spin, elapsed);
+  else
+    at.slip = there[3];
   at.travel += momentum.travelled(phi, elapsed, from.slip);
   return inside;
 }
@@ -306,8 +320,7 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
   const S& friction = slide.friction;
   panel.indeterminate = panel.spin_vanishes = false;
   panel.excess = std::numeric_limits<Number>::infinity();
-  Values turned, angular;
-  Values& spin = panel.spin;
+  Values turned, spin, angular;
   for (std::size_t i = 0; i < nodes; ++i)
     spin[i] = from.spin, turned[i] = from.spin * duration * grid_.node[i];
   bool settled = false;
@@ -371,11 +384,15 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
   panel.free_force.end = sample_force(end_phi, panel.end.spin, end);
   panel.slip.start = {from.slip, duration * start.slip};
   panel.time_rate.fill(duration);
+  S fastest = larger(S(abs(from.spin)), S(abs(panel.end.spin)));
+  for (const S& one : spin) fastest = larger(fastest, S(abs(one)));
+  panel.sweep = duration * fastest;
   const typename Grid::Integrated slipped = grid_.integrated(panel.slip.rate);
   Values carried;
   for (std::size_t i = 0; i < nodes; ++i) {
     panel.slip.value[i] = from.slip + slipped.running[i];
     carried[i] = duration * panel.slip.value[i];
+    panel.turning[i] = duration * spin[i];
   }
   panel.end.time = from.time + duration;
   panel.end.slip = from.slip + slipped.whole;

@@ -3,11 +3,11 @@
 ///
 /// In the angle u = w^2 obeys du/dphi = a u + b with a = 2 rho c turn, b = 2 n1 turn + 2 tau / Ic,
 /// n1 = cos(theta) + rho s tau / Ic (hoop/sliding.hpp), so that u = e^A (u0 + integral of b e^-A), A the
-/// integral of a; time, slip and travel are integrals over u's root. Near Painleve's edge n0 takes the place
-/// of u: it obeys an equation of the same kind, with -tan(phi) + 2 rho c turn and
-/// tan(phi) n1 + 3 rho c tau / Ic, and keeps its digits where it vanishes with the pivot. Where the spin goes
-/// through zero panels are in time, angle and spin at their nodes by Picard's iteration; or, as u is smooth
-/// there, one by angle ends where u is zero.
+/// integral of a; time and slip are integrals over u's root, and travel follows. Near Painleve's edge n0
+/// takes the place of u: it obeys an equation of the same kind, with -tan(phi) + 2 rho c turn and tan(phi) n1
+/// + 3 rho c tau / Ic, and keeps its digits where it vanishes with the pivot. Where the spin goes through
+/// zero panels are in time, angle and spin at their nodes by Picard's iteration; or, as u is smooth there,
+/// one by angle ends where u is zero.
 #pragma once
 
 #include <optional>
@@ -30,8 +30,7 @@ class SlidingPanels {
   /// What is taken for the error of an integral up to a place on a panel, over its integrand's tail. It is
   /// about a hundredth (numerics/spectral.hpp); the rest is room for errors that grow after it.
   static constexpr Number error_over_tail = Number(0.25);
-  /// Panels in lanes are far from any edge.
-  static constexpr bool has_edges = Lanes<S>::count == 1;
+  static constexpr bool has_edges = Lanes<S>::count == 1;  ///< panels in lanes are far from any
   using Grid = SpectralPanel<S, nodes>;
   using Values = typename Grid::Values;
 
@@ -41,13 +40,14 @@ class SlidingPanels {
     Values value, rate;
     Sample<S> end;
   };
-  /// What the nodes of a panel hold, in order of time, and its end.
+  /// What the nodes of a panel hold, in order of time, and its end. Of duals the nodes hold no slip and no
+  /// rates of n0.
   struct Panel {
     Course slip, free_force;
-    Values spin, time_rate;  ///< time's derivative by the panel's coordinate
+    Values turning, time_rate;  ///< derivatives of angle and time by the panel's coordinate
     Sample<S> travel_start, travel_end;
     // Of a panel by angle: y = e^growth (start_y + driven) is w^2 or, where it says so, n0.
-    Values growth, driven, driven_rate, elapsed;
+    Values growth, driven, driven_rate;
     Sample<S> driven_start, driven_end;
     S start_y;
     bool by_force;
@@ -55,6 +55,7 @@ class SlidingPanels {
     Value spin_excess;  ///< the nodes resolve y if at most 1, also where the spin vanishes
     ContactState<S> end;
     S turned;            ///< from start to end
+    S sweep;             ///< and no less than the angle from the start to any place
     Value excess;        ///< at most 1: spin, slip and time are good; infinity: it could not be solved
     Value end_excess;    ///< of a panel by angle, the same of its end alone
     Mask indeterminate;  ///< the pivot is not above zero somewhere: the equations have no answer there
@@ -138,9 +139,9 @@ class SlidingPanels {
 
   /// The travel on a panel that is solved, and whether bounds say that it stays within a runway there. slip:
   /// its extent.
-  Course travel_on(const Panel& panel) const;
+  Course travel_on(const Panel& panel) const requires(!has_derivatives<S>);
   Mask keeps_within(const S& runway, const ContactState<S>& from, const Panel& panel,
-                    const PanelExtent<S>& slip) const;
+                    const PanelExtent<S>& slip) const requires(!has_derivatives<S>);
 
   const Grid& grid() const { return grid_; }
   Number tolerance() const { return tolerance_; }
@@ -152,12 +153,11 @@ class SlidingPanels {
   struct AtNodes {
     std::array<Trig<T>, nodes / Grid::width> phi;
     std::array<SlidingCoefficients<T>, nodes / Grid::width> sliding;
-    Values turning;        ///< the angle's derivative by the panel's coordinate
-    Values grows, drives;  ///< a and b of y' = a y + b, by that coordinate
+    Values grows, drives;  ///< a and b of y' = a y + b, by the panel's coordinate
     T least_pivot;         ///< of those in each lane
   };
   AtNodes at_nodes(const Slide& slide, const ContactState<S>& from, const Stretch& stretch, const S& way,
-                   bool by_force) const;
+                   bool by_force, Values& turning) const;
   /// And at one of its ends: w^2, n0, and how fast angle and time go by the panel's coordinate.
   struct AtEnd {
     Trig<S> phi;
@@ -171,11 +171,18 @@ class SlidingPanels {
     const Value ten(Number(10)), least(std::numeric_limits<Number>::min());
     return ten * tail * tail / (larger(integral, Value(ten * tail)) + least);
   }
-  /// Slip, travel and n0 at the ends of a panel whose spin and time are known; slip and n0 at its nodes.
+  /// What slip, travel and n0 are at the ends of a panel whose spin and time are known; of numbers also the
+  /// slip at the end.
   void fill_ends(const Slide& slide, const ContactState<S>& from, const AtEnd& start, const AtEnd& end,
-                 Panel& panel) const;
-  void fill_nodes(const Slide& slide, const ContactState<S>& from, const AtNodes& at, const Trig<S>& begun,
-                  Panel& panel) const;
+                 const S& duration, Panel& panel) const;
+  struct Errors {
+    Value between, at_end;  ///< at and between the nodes, and at the panel's end
+  };
+  /// The rates of n0 and the slip at the nodes, where w^2 is `squared`, and the slip at the end. It is
+  /// integrated: where a slide begins at v = 0 and hardly leaves it, momenta differ by no more than their
+  /// roundings. Returns the slip's errors, of one more than its size. Of duals only these.
+  Errors slip_at_nodes(const Slide& slide, const ContactState<S>& from, const AtNodes& at,
+                       const Values& squared, const S& duration, const Value& time_tail, Panel& panel) const;
 
   Number tolerance_;
   Grid grid_;

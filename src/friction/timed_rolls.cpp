@@ -50,7 +50,6 @@ void TimedRolls<T>::pass(std::vector<Timed>& timed) {
       motions_.template load<T>(index.data());
   const PastRelease<T> motion{released, push2, by_sine, by_versine, J_min, by_turned, J_cos, J_sin};
   const auto [shift, end, from, so_far, length, resolving, thrust] = clocks_.template load<T>(index.data());
-  const T two(S(2));
   T to = sqrt(from * from + length);
   to = select(to * to + T(S(0.3)) * length > end * end, end, to);
   const T span = to - from;
@@ -60,10 +59,10 @@ void TimedRolls<T>::pass(std::vector<Timed>& timed) {
     const T q = from + span * T(panel_.node[i]), x = shift + q * q;
     const Trig<T> turned = trig(x);
     const T E = motion.vis_viva(x, turned, x_minus_sin(x, turned));
-    f[i] = two * q * slowness(motion.inertia(turned), E);
+    f[i] = q * slowness(motion.inertia(turned), E);
     least_E = smaller(least_E, E);
   }
-  const T whole = span * panel_.integral(f), tail = span * panel_.tail(f);
+  const T whole = T(S(2)) * span * panel_.integral(f), tail = T(S(2)) * span * panel_.tail(f);
   const T rounding = time_rounding(released, thrust, to, least_E);
   const MaskOf<T> resolved = tail <= larger(resolving, rounding) * whole;
   const T sum = select(resolved, so_far + whole, so_far), at = select(resolved, to, from),

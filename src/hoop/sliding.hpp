@@ -10,8 +10,8 @@
 /// first order. Where Ic + rho s q <= 0 the rigid-body equations have no answer or two (Painleve).
 ///
 /// As F = -m N, the mass's momentum along the plane and m times that away from it, v + (1 - rho c) w and
-/// m rho s w, together gain sin(theta) - m cos(theta) a time unit. So slip and travel follow from angle, spin
-/// and time (SlidingMomentum).
+/// m rho s w, together gain sin(theta) - m cos(theta) a time unit. So travel and, but for its last digits,
+/// slip follow from angle, spin and time (SlidingMomentum).
 #pragma once
 
 #include "hoop/rolling.hpp"
@@ -81,11 +81,12 @@ SlidingMotion<T> sliding_motion(const Hoop<T>& hoop, const Trig<T>& phi, const T
                         free_normal_force(hoop, phi, spin_squared));
 }
 
-/// The sum of momenta that gains evenly while a hoop slides one way, from a state on.
+/// v + reach w, reach = 1 - rho c + m rho s, the sum of momenta that gains `gain` a time unit while a hoop
+/// slides one way; and its integral, travel - rho s - m rho c. From a state on.
 template <class T>
 struct SlidingMomentum {
   T rho, friction, clearance, gain;
-  T turning, swung;  ///< at that state
+  T turning, swung;  ///< reach w and rho s + m rho c at that state
 
   SlidingMomentum(const Hoop<T>& hoop, const T& m, const Trig<T>& phi, const T& spin)
       : rho(hoop.rho),
@@ -95,7 +96,7 @@ struct SlidingMomentum {
         turning(reach(phi) * spin),
         swung(swing(phi)) {}
 
-  /// What slip and travel have gained a time later; slip: at that state.
+  /// What slip and travel have gained a time later, at which the hoop is at phi. slip: at that state.
   T slip_gained(const Trig<T>& phi, const T& spin, const T& time) const {
     return gain * time + (turning - reach(phi) * spin);
   }

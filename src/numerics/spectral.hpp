@@ -26,7 +26,7 @@ struct SpectralPanel {
   /// Nodes in a T; one where its lanes are panels of their own.
   static constexpr std::size_t width = std::is_same_v<T, S> ? 1 : Lanes<T>::count;
   static_assert(n % width == 0);
-  static_assert(n % 2 == 0);
+  static_assert(n % 2 == 0 && n >= 6);
   Numbers node, weight;
   std::array<Numbers, n>
       running;  ///< integral of the j-th cardinal polynomial from 0 to node i is running[j][i]
@@ -138,7 +138,8 @@ struct SpectralPanel {
     const T zero(Number(0));
     std::array<T, count> above;
     T below;
-    // nearest: what stands for no way at all. On a node its share is all but the whole.
+    // If x is on a node its share is infinite, and the sums are no numbers: then once more, with next to
+    // nothing in place of no way at all.
     const auto add_up = [&](const auto& away_from) {
       above.fill(zero), below = zero;
       for (std::size_t i = 0; i < n; i += width) {
@@ -153,9 +154,9 @@ struct SpectralPanel {
         const T away = T(x) - shared(node, i);
         return select(away == zero, T(Number(1e-290)), away);
       });
-    std::array<S, count> told;
-    for (std::size_t k = 0; k < count; ++k) told[k] = sum(above[k]) / sum(below);
-    return told;
+    std::array<S, count> there;
+    for (std::size_t k = 0; k < count; ++k) there[k] = sum(above[k]) / sum(below);
+    return there;
   }
   /// The longest way between neighbours among the nodes and both ends.
   Number longest_spacing() const { return node[n / 2] - node[n / 2 - 1]; }
@@ -172,7 +173,7 @@ struct SpectralPanel {
       const Values coefficients = product(expansion, f);
       for (std::size_t k = 0; k < n; k += width)
         bound += times(fourth.data() + k, T(abs(at(coefficients, k))));
-      return {sum(bound), tail(f)};
+      return {sum(bound), larger(largest_part(coefficients[n - 2]), largest_part(coefficients[n - 1]))};
     } else {
       // Of the first four there is no such derivative; and no sum waits for all those before it.
       constexpr std::size_t some = (n - 4) % 10 == 0 ? 10 : 2;

@@ -288,6 +288,28 @@ TEST(AimedCoulomb, KnownCases) {
   EXPECT_EQ(dip.spurious_first_jump, 1);
 }
 
+/// Just above what friction holds the slip gains next to nothing before it comes back to zero. It has to be
+/// above zero in between all the same: else the hoop would begin to slide there again and again.
+TEST(AimedCoulomb, SlidesThatHardlyBeginEnd) {
+  std::mt19937_64 random(8);
+  int tried = 0;
+  for (int i = 0; i < 1'000; ++i) {
+    Design design = some_design(random);
+    design.release_angle = uniform(random, -3.0, 3.0), design.release_spin = uniform(random, -10.0, 10.0);
+    const Hoop<double> hoop = reduce<double>(design, coulomb);
+    const Trig<double> phi = trig(design.release_angle);
+    const double turns = angular_acceleration(hoop, phi, design.release_spin),
+                 N = normal_force(hoop, phi, design.release_spin, turns),
+                 held = std::abs(friction_force(hoop, phi, design.release_spin, turns)) / N;
+    if (!(N > 0.01) || !(held > 0.02) || !(held < 1.0)) continue;
+    design.mu_static = design.mu_kinetic = held * (1.0 - std::pow(10.0, uniform(random, -12.0, -5.0)));
+    ++tried;
+    const Outcome outcome = solved(design);
+    EXPECT_NE(outcome.status, Status::failed) << i << ": " << outcome.failure;
+  }
+  EXPECT_GT(tried, 200);
+}
+
 /// A slip that begins and ends before the first node of its panel, at release and on the way.
 TEST(AimedCoulomb, ShortSlipsAreGoneThroughOnce) {
   for (const Design& design : {Design{.slope = 0.46232665277742052,

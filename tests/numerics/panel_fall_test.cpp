@@ -85,6 +85,7 @@ TEST(Spectral, TheFourthDerivativeIsBounded) {
     const double bound = panel.roughness(values).fourth;
     EXPECT_GT(bound, std::pow(k, 4) * 0.3) << "no less than the largest there is";
     EXPECT_LT(bound, std::pow(k, 4) * 30.0 + 1e-3) << "and of use";
+    EXPECT_NEAR(panel.roughness(values).tail, panel.tail(values), 1e-14);  // roundings of the same sums
   }
 }
 
@@ -108,6 +109,7 @@ TEST(Spectral, IntegralsInLanesAreThoseOfOnePanel) {
   for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(lanes_of(many.running[i])[last], one.running[i], roundings);
   EXPECT_NEAR(lanes_of(many.whole)[last], one.whole, roundings);
   EXPECT_NEAR(lanes_of(many.tail)[last], one.tail, 10.0 * roundings);
+  EXPECT_NEAR(lanes_of(wide.roughness(in_lanes).tail)[last], one.tail, 10.0 * roundings);
   EXPECT_NEAR(lanes_of(wide.roughness(in_lanes).fourth)[last] / panel.roughness(values).fourth, 1.0,
               1e-9);  // coefficients of 1e-15 by up to 1e7
   // The integral itself, e^x (cos y + 5 sin y) / 26, y = 5 x + 0.3.
