@@ -167,7 +167,9 @@ class RollingWalk {
       // One bit for each look, and for the way to it.
       const unsigned beyond = Lanes<T>::bits(!(now.angle < T(last)));
       unsigned stops = (~clear_between(before, now) & all) | beyond;
-      const bool in_order = S(node) * step > left_at;  // else it begins at the first node, but for rounding
+      // Else the leg begins at the first node, but for rounding: that is left out, and what follows it is
+      // looked at from the beginning.
+      const bool in_order = S(node) * step > left_at;
       if (!in_order) stops |= 3u & all;
       if (stops != 0) {
         const LooksInARow<T> looks(before, now);

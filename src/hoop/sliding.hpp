@@ -84,29 +84,31 @@ SlidingMotion<T> sliding_motion(const Hoop<T>& hoop, const Trig<T>& phi, const T
 /// v + reach w, reach = 1 - rho c + m rho s, the sum of momenta that gains `gain` a time unit while a hoop
 /// slides one way; and its integral, travel - rho s - m rho c. From a state on.
 template <class T>
-struct SlidingMomentum {
-  T rho, friction, clearance, gain;
-  T turning, swung;  ///< reach w and rho s + m rho c at that state
-
+class SlidingMomentum {
+ public:
   SlidingMomentum(const Hoop<T>& hoop, const T& m, const Trig<T>& phi, const T& spin)
-      : rho(hoop.rho),
-        friction(m),
-        clearance(hoop.clearance),
-        gain(hoop.sin_slope - m * hoop.cos_slope),
-        turning(reach(phi) * spin),
-        swung(swing(phi)) {}
+      : rho_(hoop.rho),
+        friction_(m),
+        clearance_(hoop.clearance),
+        gain_(hoop.sin_slope - m * hoop.cos_slope),
+        turning_(reach(phi) * spin),
+        swung_(swing(phi)) {}
 
-  /// What slip and travel have gained a time later, at which the hoop is at phi. slip: at that state.
+  /// What the slip has gained a time later, at which the hoop is at phi and has that spin.
   T slip_gained(const Trig<T>& phi, const T& spin, const T& time) const {
-    return gain * time + (turning - reach(phi) * spin);
+    return gain_ * time + (turning_ - reach(phi) * spin);
   }
+  /// How far it has travelled by then. slip: at that state.
   T travelled(const Trig<T>& phi, const T& time, const T& slip) const {
-    return time * (slip + turning + T(ScalarOf<T>(0.5)) * gain * time) + (swing(phi) - swung);
+    return time * (slip + turning_ + T(ScalarOf<T>(0.5)) * gain_ * time) + (swing(phi) - swung_);
   }
 
  private:
-  T reach(const Trig<T>& phi) const { return clearance + rho * (phi.versine + friction * phi.sin); }
-  T swing(const Trig<T>& phi) const { return rho * (phi.sin + friction * phi.cos); }
+  T reach(const Trig<T>& phi) const { return clearance_ + rho_ * (phi.versine + friction_ * phi.sin); }
+  T swing(const Trig<T>& phi) const { return rho_ * (phi.sin + friction_ * phi.cos); }
+
+  T rho_, friction_, clearance_, gain_;
+  T turning_, swung_;  // reach w and rho s + m rho c at that state
 };
 
 }  // namespace leapmap
