@@ -167,8 +167,8 @@ class RollingWalk {
       // One bit for each look, and for the way to it.
       const unsigned beyond = Lanes<T>::bits(!(now.angle < T(last)));
       unsigned stops = (~clear_between(before, now) & all) | beyond;
-      // Else the leg begins at the first node, but for rounding: that is left out, and what follows it is
-      // looked at from the beginning.
+      // Else the leg begins at the first node, but for rounding: that node is left out, and the beginning
+      // takes its place as the second one's neighbour.
       const bool in_order = S(node) * step > left_at;
       if (!in_order) stops |= 3u & all;
       if (stops != 0) {

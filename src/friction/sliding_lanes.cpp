@@ -86,8 +86,8 @@ auto SlidingLanes<T>::first_events(const InLanes& slides, const MaskOf<T>& asked
   };
   Events events{T(S(2)), {}, MaskOf<T>(true)};
   // In the order in which SlidingLeg looks, as of two at the same place the first counts.
-  const auto look = [&](PhaseEnd end, const Course& guard, const PanelExtent<T>& of_guard,
-                        const MaskOf<T>& near) {
+  const auto find_fall = [&](PhaseEnd end, const Course& guard, const PanelExtent<T>& of_guard,
+                             const MaskOf<T>& near) {
     const auto [bend, tail] = grid.roughness(guard.value);
     const T slack = T(S(4)) * tail + T(S(64) * std::numeric_limits<S>::epsilon()) *
                                          larger(T(abs(of_guard.least)), T(abs(of_guard.most)));
@@ -101,12 +101,12 @@ auto SlidingLanes<T>::first_events(const InLanes& slides, const MaskOf<T>& asked
       if (bits >> i & 1u) events.end[i] = end;
   };
   // Where offset + factor times a course falls through zero, factor 1 or -1.
-  const auto look_past = [&](PhaseEnd end, const T& offset, const T& factor, const Course& course,
-                             const PanelExtent<T>& of_course, const MaskOf<T>& of_lanes) {
+  const auto look = [&](PhaseEnd end, const T& offset, const T& factor, const Course& course,
+                        const PanelExtent<T>& of_course, const MaskOf<T>& of_lanes) {
     const PanelExtent<T> of_guard = of_course.of(offset, factor);
     const MaskOf<T> near = of_lanes & !is_clear_of_zero(grid, of_guard);
     if (!any(near)) return;
-    if (all((offset == T(S(0))) & (factor == T(S(1))))) return look(end, course, of_guard, near);
+    if (all((offset == T(S(0))) & (factor == T(S(1))))) return find_fall(end, course, of_guard, near);
     const auto sample = [&](const Sample<T>& at) {
       return Sample<T>{offset + factor * at.value, factor * at.rate};
     };
@@ -114,18 +114,18 @@ auto SlidingLanes<T>::first_events(const InLanes& slides, const MaskOf<T>& asked
     guard.start = sample(course.start), guard.end = sample(course.end);
     for (std::size_t i = 0; i < nodes; ++i)
       guard.value[i] = offset + factor * course.value[i], guard.rate[i] = factor * course.rate[i];
-    look(end, guard, of_guard, near);
+    find_fall(end, guard, of_guard, near);
   };
   const T zero(S(0)), one(S(1));
   const PanelExtent<T> slip = extent(panel_.slip);
-  look_past(PhaseEnd::lifts_off, zero, one, panel_.free_force, extent(panel_.free_force), asked);
-  look_past(PhaseEnd::slip_ends, zero, slides.direction, panel_.slip, slip, asked);
-  const MaskOf<T> far = asked & !panels_.keeps_within(slides.runway, slides.from, panel_, slip);
-  if (!any(far)) return events;
+  look(PhaseEnd::lifts_off, zero, one, panel_.free_force, extent(panel_.free_force), asked);
+  look(PhaseEnd::slip_ends, zero, slides.direction, panel_.slip, slip, asked);
+  const MaskOf<T> may_leave = asked & !panels_.keeps_within(slides.runway, slides.from, panel_, slip);
+  if (!any(may_leave)) return events;
   const Course travel = panels_.travel_on(panel_);
   const PanelExtent<T> along = extent(travel);
   for (const T& downhill : {one, -one})
-    look_past(PhaseEnd::runway_ends, slides.runway, -downhill, travel, along, far);
+    look(PhaseEnd::runway_ends, slides.runway, -downhill, travel, along, may_leave);
   return events;
 }
 

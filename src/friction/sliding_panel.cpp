@@ -77,15 +77,16 @@ auto SlidingPanels<S>::at_nodes(const Slide& slide, const ContactState<S>& from,
     nodes_at.sliding[i / width] = at;
     least = smaller(least, at.pivot);
     const T idle = hoop.cos_slope + raised * phi.sin;  // n0 at no spin
-    const T turned = Grid::at(turning, i), twice = T(S(2)) * turned, by_force_alone = twice * at.turn;
+    // w^2 gains per_force n0 + twice torque by the panel's coordinate.
+    const T turned = Grid::at(turning, i), twice = T(S(2)) * turned, per_force = twice * at.turn;
     const T lever = hoop.rho * phi.cos;
     if (by_force) {
       const T tangent = phi.sin / phi.cos;
-      put(by_force_alone * lever - turned * tangent, nodes_at.grows, i);
+      put(per_force * lever - turned * tangent, nodes_at.grows, i);
       put(turned * (tangent * idle + T(S(3)) * lever * torque), nodes_at.drives, i);
     } else {
-      put(by_force_alone * lever, nodes_at.grows, i);
-      put(by_force_alone * idle + twice * torque, nodes_at.drives, i);
+      put(per_force * lever, nodes_at.grows, i);
+      put(per_force * idle + twice * torque, nodes_at.drives, i);
     }
   }
   nodes_at.least_pivot = least;
@@ -97,7 +98,7 @@ auto SlidingPanels<S>::at_nodes(const Slide& slide, const ContactState<S>& from,
 template <class S>
 void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>& from, const Stretch& stretch,
                                       Panel& panel) const {
-  using std::abs, std::sqrt;
+  using std::sqrt;
   constexpr std::size_t width = Grid::width;
   const auto get = [](const Values& values, std::size_t i) { return Grid::at(values, i); };
   const auto put = [](const T& value, Values& values, std::size_t i) { Grid::put(value, values, i); };
@@ -177,7 +178,7 @@ void SlidingPanels<S>::solve_by_angle(const Slide& slide, const ContactState<S>&
   panel.driven_end = {end_driven, driven_by(end) / end_growth};
   if (all(panel.spin_vanishes)) return;
 
-  // At rest the one over the other has a limit.
+  // At rest turning and spin are zero, and their ratio has a limit.
   panel.end.spin = way * sqrt(end.u);
   end.time_rate = select(rests, time_rate[nodes - 1], S(end.turning / panel.end.spin));
   start.time_rate = select(start.u > S(0), S(start.turning / from.spin), time_rate[0]);
@@ -231,7 +232,7 @@ auto SlidingPanels<S>::slip_at_nodes(const Slide& slide, const ContactState<S>& 
   using std::abs;
   const Value size = largest_part(S(S(1) + abs(from.slip)));
   if constexpr (has_derivatives<S>) {  // asked for at a panel's end, where slip has so much of time's error
-    const S gained = (slide.hoop.sin_slope - slide.friction * slide.hoop.cos_slope) * duration;
+    const S gained = momentum_gain(slide.hoop, slide.friction) * duration;
     const Value error = largest_part(gained) / size * time_tail;
     return {Value(error_over_tail) * error, error};
   } else {
@@ -388,15 +389,13 @@ void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& 
   for (const S& one : spin) fastest = larger(fastest, S(abs(one)));
   panel.sweep = duration * fastest;
   const typename Grid::Integrated slipped = grid_.integrated(panel.slip.rate);
-  Values carried;
   for (std::size_t i = 0; i < nodes; ++i) {
     panel.slip.value[i] = from.slip + slipped.running[i];
-    carried[i] = duration * panel.slip.value[i];
     panel.turning[i] = duration * spin[i];
   }
   panel.end.time = from.time + duration;
   panel.end.slip = from.slip + slipped.whole;
-  panel.end.travel = from.travel + panel.turned + grid_.integral(carried);
+  panel.end.travel = from.travel + panel.turned + duration * grid_.integral(panel.slip.value);
   panel.slip.end = {panel.end.slip, duration * end.slip};
   panel.travel_start = {from.travel, duration * (from.slip + from.spin)};
   panel.travel_end = {panel.end.travel, duration * (panel.end.slip + panel.end.spin)};

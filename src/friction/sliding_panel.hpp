@@ -40,8 +40,8 @@ class SlidingPanels {
     Values value, rate;
     Sample<S> end;
   };
-  /// What the nodes of a panel hold, in order of time, and its end. Of duals the nodes hold no slip and no
-  /// rates of n0.
+  /// What the nodes of a panel hold, in order of time, and its end. By angle the nodes of duals hold no
+  /// slip and no rates of n0.
   struct Panel {
     Course slip, free_force;
     Values turning, time_rate;  ///< derivatives of angle and time by the panel's coordinate
@@ -171,8 +171,8 @@ class SlidingPanels {
     const Value ten(Number(10)), least(std::numeric_limits<Number>::min());
     return ten * tail * tail / (larger(integral, Value(ten * tail)) + least);
   }
-  /// What slip, travel and n0 are at the ends of a panel whose spin and time are known; of numbers also the
-  /// slip at the end.
+  /// Slip, travel and n0 at the ends of a panel whose spin and time are known, and of numbers also the slip
+  /// at its end.
   void fill_ends(const Slide& slide, const ContactState<S>& from, const AtEnd& start, const AtEnd& end,
                  const S& duration, Panel& panel) const;
   struct Errors {

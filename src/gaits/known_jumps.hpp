@@ -22,8 +22,8 @@ class KnownJumps {
   void add(const Landed& from, const Landed& to, std::uint64_t phases);
 
   /// Where the jump ends that begins there. Nothing if interpolation is not good to some `error`: its
-  /// neighbours went through other phases, lie on another curve, or are too far away; nor ever again after so
-  /// many that were not known that it is not worth while.
+  /// neighbours went through other phases, lie on another curve, or are too far away. Once too few of the
+  /// jumps asked for could be interpolated, it always returns nothing.
   std::optional<Landed> next(const Landed& from);
 
   /// The largest change that the last neighbour may make to the interpolated landing. The landing itself is

@@ -81,8 +81,14 @@ SlidingMotion<T> sliding_motion(const Hoop<T>& hoop, const Trig<T>& phi, const T
                         free_normal_force(hoop, phi, spin_squared));
 }
 
-/// v + reach w, reach = 1 - rho c + m rho s, the sum of momenta that gains `gain` a time unit while a hoop
-/// slides one way; and its integral, travel - rho s - m rho c. From a state on.
+/// What both momenta together gain a time unit.
+template <class T>
+T momentum_gain(const Hoop<T>& hoop, const T& friction) {
+  return hoop.sin_slope - friction * hoop.cos_slope;
+}
+
+/// Their sum v + reach w, reach = 1 - rho c + m rho s, and its integral, travel - rho s - m rho c, of a slide
+/// one way that is counted from a given state.
 template <class T>
 class SlidingMomentum {
  public:
@@ -90,15 +96,15 @@ class SlidingMomentum {
       : rho_(hoop.rho),
         friction_(m),
         clearance_(hoop.clearance),
-        gain_(hoop.sin_slope - m * hoop.cos_slope),
+        gain_(momentum_gain(hoop, m)),
         turning_(reach(phi) * spin),
         swung_(swing(phi)) {}
 
-  /// What the slip has gained a time later, at which the hoop is at phi and has that spin.
+  /// What the slip has gained after a time, at which the hoop is at phi and has that spin.
   T slip_gained(const Trig<T>& phi, const T& spin, const T& time) const {
     return gain_ * time + (turning_ - reach(phi) * spin);
   }
-  /// How far it has travelled by then. slip: at that state.
+  /// How far it has travelled after a time, at which it is at phi. slip: at the given state.
   T travelled(const Trig<T>& phi, const T& time, const T& slip) const {
     return time * (slip + turning_ + T(ScalarOf<T>(0.5)) * gain_ * time) + (swing(phi) - swung_);
   }
@@ -108,7 +114,7 @@ class SlidingMomentum {
   T swing(const Trig<T>& phi) const { return rho_ * (phi.sin + friction_ * phi.cos); }
 
   T rho_, friction_, clearance_, gain_;
-  T turning_, swung_;  // reach w and rho s + m rho c at that state
+  T turning_, swung_;  // reach w and rho s + m rho c at the given state
 };
 
 }  // namespace leapmap

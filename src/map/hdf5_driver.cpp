@@ -363,7 +363,7 @@ bool File::finish(const std::string& path, bool replace, const std::function<voi
   bytes.rethrow_failure();
   const std::uint64_t size = bytes.size();
   // While HDF5 reads a long file again, one thread syncs it and another makes its checksum, if there can be
-  // any. Whatever this finds, what was written is committed. A shorter one takes no longer than the threads.
+  // any. Whatever this finds, what was written is committed. For a shorter file threads take longer.
   const bool is_long = size >= std::uint64_t{1} << 20;
   const auto launch = is_long ? std::launch::async | std::launch::deferred : std::launch::deferred;
   std::future<std::uint32_t> checksum;

@@ -131,8 +131,7 @@ TEST(SlidingMomentum, GivesSlipAndTravelOfTheMotion) {
   EXPECT_GT(compared, 100);
 }
 
-/// Where the runway's bounds say that it is not reached, no place on the panel lies beyond it; and they say
-/// so of all but the last panels.
+/// Where the runway's bounds say that it is not reached, no place on the panel lies beyond it.
 TEST(SlidingPanels, KeepWithinARunwayAsTheirBoundsSay) {
   const SlidingPanels<double> panels(1e-9);
   std::mt19937_64 random(34);

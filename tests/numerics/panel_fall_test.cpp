@@ -178,10 +178,10 @@ TEST(PlainFall, InLanesItIsWhereOnePanelAloneHasIt) {
     Wide::Values values, rates;
     for (std::size_t i = 0; i < n; ++i)
       values[i] = in_lanes(wide.node[i]).value, rates[i] = in_lanes(wide.node[i]).rate;
-    const auto told = plain_fall(wide, values, rates, in_lanes(0.0), in_lanes(1.0),
-                                 wide.roughness(values).fourth, Batch(1e-12), Batch(0.0) == Batch(0.0));
-    const unsigned is_plain = Lanes<Batch>::bits(told.is_plain);
-    const auto places = lanes_of(told.place);
+    const auto found = plain_fall(wide, values, rates, in_lanes(0.0), in_lanes(1.0),
+                                  wide.roughness(values).fourth, Batch(1e-12), Batch(0.0) == Batch(0.0));
+    const unsigned is_plain = Lanes<Batch>::bits(found.is_plain);
+    const auto places = lanes_of(found.place);
     for (std::size_t lane = 0; lane < width; ++lane) {
       ++all;
       if (!(is_plain >> lane & 1u)) continue;
