@@ -7,6 +7,7 @@ set(LEAPMAP_KERNEL_SOURCES  # src/model/kernels.hpp
   src/friction/gradient.cpp
   src/friction/integrated_motion.cpp
   src/friction/model.cpp
+  src/friction/motion_at.cpp
   src/friction/recorded_way.cpp
   src/friction/rolling_lanes.cpp
   src/friction/rolling_leg.cpp
@@ -36,6 +37,8 @@ set(LEAPMAP_KERNEL_SOURCES  # src/model/kernels.hpp
   src/pendulum/motion.cpp
   src/pendulum/phases.cpp
   src/pendulum/solver.cpp
+  src/noslip/roll_at_times.cpp
+  src/noslip/roll_panels.cpp
   src/noslip/rolling_motion.cpp
   src/noslip/way.cpp
   src/trajectory/way.cpp
@@ -89,7 +92,6 @@ set(LEAPMAP_SOURCES
   src/film/film_model.cpp
   src/film/film_table.cpp
   src/film/marks.cpp
-  src/film/motion_at.cpp
   src/film/observations.cpp
   src/film/place_film.cpp
   src/film/read_film.cpp

@@ -1,56 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// One design's motion at given times, with its derivatives by the parameters: what a film is compared with.
+/// One design's motion at given times by whatever model the scene names.
 #pragma once
 
-#include <array>
-#include <numeric>
-#include <span>
-#include <vector>
-
-#include "leapmap/scene.hpp"
-#include "trajectory/gradient.hpp"
+#include "model/model.hpp"
+#include "trajectory/motion_at.hpp"
 
 namespace leapmap {
 
-/// S: double, or Dual<double, N> for derivatives by up to N parameters.
-template <class S>
-struct MotionAt {
-  S phi;                             ///< [rad]
-  S x, y;                            ///< travel of the centre, height of the lowest point above the plane [R]
-  S spin;                            ///< [sqrt(g/R)]
-  double x_rate, y_rate, spin_rate;  ///< of these over time, in sqrt(R/g)
-};
-
-/// Derivatives by up to so many parameters take a third of the time that those by all of them take.
-using FewDual = Dual<double, 4>;
-/// A number that is the parameter of that place, with its derivative if it is among those.
-template <class S>
-S seeded(double value, std::size_t place, std::span<const std::size_t> by) {
-  if constexpr (has_derivatives<S>)
-    for (std::size_t k = 0; k < by.size(); ++k)
-      if (by[k] == place) return S::parameter(value, k);
-  return S(value);
-}
-/// The places of all parameters.
-inline constexpr auto by_every_parameter = [] {
-  std::array<std::size_t, differentiable.size()> places{};
-  std::iota(places.begin(), places.end(), std::size_t{0});
-  return places;
-}();
-
-/// The motion at times since release [s], in ascending order; empty if the design cannot be solved. After the
-/// landing of the jump, or the search's end, the last phase goes on for ever: a flight goes on through the
-/// plane.
-///
-/// Phases and their ends are the exact solver's. Between them, in contact, angle and spin are integrated by
-/// extrapolation of midpoint steps, to the accuracy; all else follows from these and the time. A phase's end
-/// gets its derivatives by one Newton step of what is zero there. Derivatives by mu_kinetic are added to
-/// those by mu_static where it follows that.
-///
-/// by: the places among `differentiable` of the parameters that derivatives are by, in their order in S.
+/// As MotionAtTimes has it.
 template <class S>
 std::vector<MotionAt<S>> motion_at(const Design& design, const Scene& scene, std::span<const double> times,
                                    double accuracy = 1e-11,
-                                   std::span<const std::size_t> by = by_every_parameter);
+                                   std::span<const std::size_t> by = by_every_parameter) {
+  const MotionsAtTimes at_times = need(model_of(scene), &Model::at_times, "semi-analytic motion");
+  return at_times.in<S>()(design, scene, times, accuracy, by);
+}
 
 }  // namespace leapmap

@@ -7,7 +7,7 @@ namespace leapmap {
 
 template <class S>
 Outcome CoulombSolver<S>::solve(Start start, const Design& design, ContactState<S>& from, const Scene& scene,
-                                const CoulombObserver& observer, std::vector<SlideTold<S>>* slides) {
+                                const CoulombObserver& observer, std::vector<RecordedSlide<S>>* slides) {
   return go_through_phases<S>(
       start, design, from, scene, observer,
       [&](const Hoop<S>& hoop, const Contact<S>& contact, ContactState<S>& at, const S& runway) {
@@ -17,7 +17,7 @@ Outcome CoulombSolver<S>::solve(Start start, const Design& design, ContactState<
       },
       [&](const Hoop<S>& hoop, const Contact<S>& contact, ContactState<S>& at, const S& runway,
           int direction) {
-        SlideTold<S>* taken = slides ? &slides->emplace_back() : nullptr;
+        RecordedSlide<S>* taken = slides ? &slides->emplace_back() : nullptr;
         return sliding_.run(hoop, contact.mu_kinetic, at, runway, direction, taken);
       });
 }

@@ -27,10 +27,6 @@ struct CoulombObserver {
   std::function<void(const ContactState<double>&)> end;
 };
 
-/// The panels of a slide, as the exact solver took them.
-template <class S>
-using SlideTold = std::vector<typename SlidingPanels<S>::Taken>;
-
 /// A thread's own workspace. S: double, or long double for the tests' reference.
 template <class S>
 class CoulombSolver {
@@ -41,14 +37,14 @@ class CoulombSolver {
   /// Never throws for a bad design: what cannot be solved has status failed and a reason.
   /// slides, if there, is told the panels of every slide, one after the other.
   Outcome solve(const Design& design, const Scene& scene, const CoulombObserver& observer = {},
-                std::vector<SlideTold<S>>* slides = nullptr) {
+                std::vector<RecordedSlide<S>>* slides = nullptr) {
     ContactState<S> from = released<S>(design);
     return solve(Start::release, design, from, scene, observer, slides);
   }
   /// The same from where it was released or has just landed; moves that to just after the landing of its
   /// jump.
   Outcome solve(Start start, const Design& design, ContactState<S>& from, const Scene& scene,
-                const CoulombObserver& observer = {}, std::vector<SlideTold<S>>* slides = nullptr);
+                const CoulombObserver& observer = {}, std::vector<RecordedSlide<S>>* slides = nullptr);
 
  private:
   RollingLeg<S> rolling_;

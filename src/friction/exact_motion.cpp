@@ -6,6 +6,7 @@
 
 #include "friction/coulomb.hpp"
 #include "friction/model.hpp"
+#include "friction/recorded_way.hpp"
 #include "hoop/units.hpp"
 #include "noslip/rolling_motion.hpp"
 
@@ -33,6 +34,16 @@ CoulombSolver<double>& solver_of(double tolerance) {
 }
 
 }  // namespace
+
+Outcome record(const Design& design, const Scene& scene, double tolerance, RecordedWay& recorded) {
+  CoulombSolver<double>& solver = solver_of(tolerance);
+  Outcome found;
+  Sequences<double>([&](Start start, std::span<const Design>, std::span<ContactState<double>> at,
+                        std::span<Outcome> outcome) {
+    outcome[0] = recorded_way(solver, start, design, at[0], scene, recorded);
+  }).solve({&design, 1}, scene, {&found, 1});
+  return found;
+}
 
 Motion tell_exactly(const Design& design, const Scene& scene, double tolerance, double interval) {
   Motion motion;

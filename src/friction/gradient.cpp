@@ -10,6 +10,7 @@
 #include "friction/model.hpp"
 #include "friction/panel_forces.hpp"
 #include "friction/recorded_way.hpp"
+#include "friction/slide_again.hpp"
 #include "hoop/landing.hpp"
 #include "hoop/sliding.hpp"
 #include "hoop/stick.hpp"
@@ -130,21 +131,24 @@ class Chain {
     return true;
   }
 
-  bool slide_on(const SlideTold<double>& taken, int direction, const ContactState<double>& to,
+  bool slide_on(const RecordedSlide<double>& taken, int direction, const ContactState<double>& to,
                 bool then_flies) {
     const ContactState<D> from = at_;
-    typename SlidingPanels<D>::Slide slide{
-        hoop_, contact_.mu_kinetic * static_cast<double>(direction), {}, {}, {}};
-    slide.free_force = free_normal_force(hoop_, trig(at_.angle), at_.spin * at_.spin);
-    if (at_.spin == D(0.0)) set_out_from_rest(slide.friction);
-    for (const auto& one : taken)
-      if (!over_panel(slide, dual_part(slide, one), HUGE_VAL)) return false;
+    const D friction = contact_.mu_kinetic * static_cast<double>(direction);
+    SlideAgain<D> slide(panels_, hoop_, friction);
+    slide.begin(at_);
+    const bool is_known = slide.over(taken, at_, [&](const auto&... of_panel) {
+      with_meter([&](auto& meter) { meet(meter, of_panel...); });
+    });
+    if (!is_known) return false;
     const Trig<D> phi = trig(at_.angle);
-    const SlidingMotion<D> motion = sliding_motion(hoop_, phi, at_.spin * at_.spin, slide.friction);
+    const SlidingMotion<D> motion = sliding_motion(hoop_, phi, at_.spin * at_.spin, friction);
     const double travels = at_.slip.value + at_.spin.value;
     // What is zero here, and how fast it falls or rises.
     const bool slip_ends = to.slip == 0.0;
-    const D zero = slip_ends ? at_.slip : then_flies ? slide.free_force : at_.travel;
+    const D zero = slip_ends    ? at_.slip
+                   : then_flies ? free_normal_force(hoop_, phi, at_.spin * at_.spin)
+                                : at_.travel;
     const double rate =
         slip_ends ? motion.slip.value
         : then_flies
@@ -161,8 +165,7 @@ class Chain {
     }
     const D turned = at_.angle - from.angle;
     with_meter([&](auto& meter) {
-      const D force =
-          sliding_motion(hoop_, trig(at_.angle), at_.spin * at_.spin, slide.friction).normal_force;
+      const D force = sliding_motion(hoop_, trig(at_.angle), at_.spin * at_.spin, friction).normal_force;
       meter.meet({force, at_.spin}), meter.turn(turned);
     });
     if (slip_ends) at_.slip = D(0.0);
@@ -171,87 +174,26 @@ class Chain {
     return true;
   }
 
-  using Part = typename SlidingPanels<D>::Taken;
-
-  /// The plain solver's panel in duals. Where the hoop has just set out, u = w^2 is small, and time's
-  /// derivatives go as u^(-3/2): fixed nodes would not resolve them however well they resolve the values. So
-  /// the stretch moves with the zero of u just before its start, as SlidingPanels::stretch_of places it, and
-  /// all is smooth along it again. Its end keeps its q. A zero that is farther behind needs no such care,
-  /// and would move so much that digits are lost.
-  Part dual_part(const typename SlidingPanels<D>::Slide& slide,
-                 const SlidingPanels<double>::Taken& taken) const {
-    if (!taken.stretch) return {{}, D(taken.duration)};
-    const auto& plain = *taken.stretch;
-    typename SlidingPanels<D>::Stretch stretch{D(plain.shift), D(plain.begin), D(plain.span)};
-    const SlidingMotion<D> start =
-        sliding_motion(hoop_, trig(at_.angle), at_.spin * at_.spin, slide.friction);
-    const D rise = at_.spin < D(0.0) ? -start.angular : start.angular;
-    if (at_.spin == D(0.0) || !(rise > D(0.0))) return {stretch, {}};
-    const auto moving = SlidingPanels<D>::stretch_of(at_.spin, rise, D(HUGE_VAL));
-    constexpr double near = 0.25;  // of the panel's length
-    const bool is_near = -plain.shift < near * plain.length();
-    if (!is_near || !(std::abs(moving.shift.value - plain.shift) <= 1e-3 * std::abs(plain.shift)))
-      return {stretch, {}};
-    stretch.shift.by = moving.shift.by, stretch.begin.by = moving.begin.by;
-    stretch.span = D(plain.begin + plain.span) - stretch.begin;
-    return {stretch, {}};
-  }
-
-  /// Slides over a panel, in halves where that resolves the values but not their derivatives, and as long as
-  /// that helps. excess: of the panel that it is half of.
-  bool over_panel(typename SlidingPanels<D>::Slide& slide, const Part& part, double excess) {
-    constexpr double resolved = 1e3;  // times the finest tolerance of integrals
-    constexpr int most_panels = 2'000;
-    typename SlidingPanels<D>::Panel panel;
-    panels_.solve(slide, at_, part, panel);
-    if (!std::isfinite(panel.excess) || ++panels_taken_ > most_panels) return false;
-    if (panel.excess <= resolved || !(panel.excess < 0.5 * excess)) {
-      with_meter([&](auto& meter) { meet(meter, slide, part, panel); });
-      at_ = panel.end;
-      slide.free_force = panel.free_force.end.value;
-      return true;
-    }
-    Part first = part, second = part;
-    if (part.stretch) {
-      const D half = 0.5 * part.stretch->span;
-      first.stretch->span = second.stretch->span = half;
-      second.stretch->shift -= first.stretch->length(), second.stretch->begin += half;
-    } else {
-      first.duration = second.duration = 0.5 * part.duration;
-    }
-    return over_panel(slide, first, panel.excess) && over_panel(slide, second, panel.excess);
-  }
-
   /// The largest force and spins within a panel, which are looked for in plain numbers.
-  void meet(WayMeter<D>& meter, const typename SlidingPanels<D>::Slide& slide, const Part& part,
-            const typename SlidingPanels<D>::Panel& panel) {
+  void meet(WayMeter<D>& meter, const typename SlidingPanels<D>::Slide& slide, const ContactState<D>& at,
+            const SlidePanel<D>& part, const typename SlidingPanels<D>::Panel& panel) {
     const SlidingPanels<double>::Slide plain_slide{
         mapped<double>(hoop_, [](const D& number) { return number.value; }),
         slide.friction.value,
         {},
         {},
         slide.free_force.value};
-    SlidingPanels<double>::Taken plain_part{{}, part.duration.value};
+    SlidePanel<double> plain_part{{}, part.duration.value};
     if (part.stretch)
       plain_part.stretch = {part.stretch->shift.value, part.stretch->begin.value, part.stretch->span.value,
                             part.stretch->curve.value};
-    const ContactState<double> from = plain(at_);
+    const ContactState<double> from = plain(at);
     SlidingPanels<double>::Panel plain_panel;
     plain_panels_.solve(plain_slide, from, plain_part, plain_panel);
     const PanelForces<double> known(plain_panels_, plain_slide, from, plain_part, plain_panel);
-    const PanelForces<D> forces(panels_, slide, at_, part, panel);
+    const PanelForces<D> forces(panels_, slide, at, part, panel);
     meter.slide([&](double place) { return known.rated_at(place); },
                 [&](double place) { return forces.at(place); });
-  }
-
-  /// From rest u = w^2 does not depend on the spin to first order, and yet time and slip at an angle do: a
-  /// hoop with a small spin is one that was at rest spin / phi'' ago, but for the slip gained since.
-  void set_out_from_rest(const D& friction) {
-    const SlidingMotion<D> motion = sliding_motion(hoop_, trig(at_.angle), D(0.0), friction);
-    for (std::size_t k = 0; k < at_.spin.by.size(); ++k) {
-      const double ago = at_.spin.by[k] / motion.angular.value;
-      at_.time.by[k] -= ago, at_.slip.by[k] -= ago * motion.slip.value, at_.spin.by[k] = 0.0;
-    }
   }
 
   /// Calls use(meter), if there is one.
@@ -311,7 +253,6 @@ class Chain {
   bool turns_on_;  // the motor, in flight
   ContactState<D> at_;
   D released_{0.0}, driven_{0.0}, slipped_{0.0};
-  int panels_taken_ = 0;
   std::optional<WayMeter<D>> meter_;
 };
 

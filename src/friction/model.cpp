@@ -42,10 +42,10 @@ std::function<double(const Design&)> effort(const Scene& scene, bool derivatives
           std::span<Outcome> outcomes) {
         constexpr double derived = 10.0;  // the way to a jump once more in duals, on top of it
         for (std::size_t i = 0; i < designs.size(); ++i) {
-          std::vector<SlideTold<double>> slides;
+          std::vector<RecordedSlide<double>> slides;
           outcomes[i] = solver->solve(start, designs[i], states[i], scene, {}, &slides);
           double way = 2.0;
-          for (const SlideTold<double>& slide : slides) way += 0.2 + static_cast<double>(slide.size());
+          for (const RecordedSlide<double>& slide : slides) way += 0.2 + static_cast<double>(slide.size());
           *panels += derivatives && outcomes[i].status == Status::jumped ? (1.0 + derived) * way : way;
         }
       };

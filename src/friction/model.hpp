@@ -7,6 +7,7 @@
 
 #include "leapmap/motion.hpp"
 #include "trajectory/gradient.hpp"
+#include "trajectory/recorded_way.hpp"
 #include "trajectory/sequence_gradient.hpp"
 #include "trajectory/solver.hpp"
 
@@ -49,6 +50,9 @@ JumpSolver<double> ways(const Scene& scene, double tolerance);
 /// at the jump's lift-off and landing; infinite: those two only. Throws InputError if that would be more than
 /// 10^7 samples.
 Motion tell_exactly(const Design& design, const Scene& scene, double tolerance, double interval = 0.0);
+
+/// One design's phases, up to the last jump asked for or to where the search ends.
+Outcome record(const Design& design, const Scene& scene, double tolerance, RecordedWay& recorded);
 
 /// The same by integration in time.
 Motion tell_by_integration(const Design& design, const Scene& scene, const IntegrationOptions& options,

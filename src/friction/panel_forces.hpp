@@ -46,18 +46,7 @@ class PanelForces {
   ContactState<S> state_at(double place) const {
     if (place == 0.0) return from_;
     if (place == 1.0) return panel_.end;
-    if (taken_.stretch) {
-      const auto inside = panels_.state_at(slide_, from_, *taken_.stretch, panel_, S(place));
-      if (inside.is_sharp) return inside.state;
-    }
-    typename Panels::Taken part = taken_;  // by time, or beside the panel's start: a panel of its own
-    if (part.stretch)
-      part.stretch->span *= S(place);
-    else
-      part.duration *= S(place);
-    typename Panels::Panel panel;
-    panels_.solve(slide_, from_, part, panel);
-    return panel.end;
+    return panels_.state_within(slide_, from_, taken_, panel_, S(place));
   }
 
   const Panels& panels_;

@@ -5,7 +5,6 @@ namespace leapmap {
 
 Outcome recorded_way(CoulombSolver<double>& solver, Start start, const Design& design,
                      ContactState<double>& at, const Scene& scene, RecordedWay& recorded) {
-  recorded = {};
   CoulombObserver observer;
   observer.phase = [&](Phase phase, const ContactState<double>& state, int direction) {
     recorded.phases.push_back({phase, state, direction, {}});

@@ -311,6 +311,35 @@ auto SlidingPanels<S>::state_at(const Slide& slide, const ContactState<S>& from,
   return inside;
 }
 
+/// In a panel by time.
+template <class S>
+ContactState<S> SlidingPanels<S>::state_in_time(const Slide& slide, const ContactState<S>& from,
+                                                const Panel& panel, const S& place) const {
+  const S duration = panel.time_rate[0], elapsed = duration * place;
+  const Values turned = grid_.integrals(panel.turning);
+  const auto [angle, turning, slip] =
+      grid_.template values<3>({&turned, &panel.turning, &panel.slip.value}, place);
+  ContactState<S> at = from;
+  at.time += elapsed, at.angle += angle, at.spin = turning / duration, at.slip = slip;
+  const SlidingMomentum<S> momentum(slide.hoop, slide.friction, trig(from.angle), from.spin);
+  at.travel += momentum.travelled(trig(at.angle), elapsed, from.slip);
+  return at;
+}
+
+template <class S>
+ContactState<S> SlidingPanels<S>::state_within(const Slide& slide, const ContactState<S>& from,
+                                               const Taken& taken, const Panel& panel, const S& place) const
+    requires(has_edges) {
+  if (!taken.stretch) return state_in_time(slide, from, panel, place);
+  if (const Inside inside = state_at(slide, from, *taken.stretch, panel, place); inside.is_sharp)
+    return inside.state;
+  Taken part = taken;
+  part.stretch->span *= place;
+  Panel of_part;
+  solve(slide, from, part, of_part);
+  return of_part.end;
+}
+
 // NOLINTBEGIN(readability-function-size)
 template <class S>
 void SlidingPanels<S>::solve_by_time(const Slide& slide, const ContactState<S>& from, const S& duration,

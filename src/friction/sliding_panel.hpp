@@ -15,6 +15,7 @@
 #include "friction/contact_phases.hpp"
 #include "hoop/painleve.hpp"
 #include "numerics/panel_fall.hpp"
+#include "trajectory/recorded_way.hpp"
 
 namespace leapmap {
 
@@ -61,18 +62,8 @@ class SlidingPanels {
     Mask indeterminate;  ///< the pivot is not above zero somewhere: the equations have no answer there
     Mask spin_vanishes;  ///< w^2 is not above zero somewhere
   };
-  /// A panel by angle: |phi - from| = shift + curve q^2, q from begin to begin + span.
-  struct Stretch {
-    S shift, begin, span;
-    S curve = S(1);  ///< or -1: the spin vanishes where q is zero, at the panel's end or beyond
-    S angle(const S& place) const { return shift + curve * (begin + span * place) * (begin + span * place); }
-    S length() const { return angle(S(1)); }
-  };
-  /// A panel as a slide took it: a stretch by angle, or else a duration.
-  struct Taken {
-    std::optional<Stretch> stretch;
-    S duration;
-  };
+  using Stretch = SlideStretch<S>;
+  using Taken = SlidePanel<S>;
   /// What a slide is about.
   struct Slide {
     Hoop<S> hoop;
@@ -126,6 +117,9 @@ class SlidingPanels {
   /// panel that lasts far longer than all before it, and where the spin is small against those at its ends.
   Inside state_at(const Slide& slide, const ContactState<S>& from, const Stretch& stretch, const Panel& panel,
                   const S& place) const;
+  /// The same of any panel, with all its digits: where they are lost, by a panel of its own.
+  ContactState<S> state_within(const Slide& slide, const ContactState<S>& from, const Taken& taken,
+                               const Panel& panel, const S& place) const requires(has_edges);
   /// Solves a panel of that duration. It has no growth and nothing driven; where it is indeterminate only
   /// `excess` holds.
   void solve_by_time(const Slide& slide, const ContactState<S>& from, const S& duration, Panel& panel) const;
@@ -147,6 +141,8 @@ class SlidingPanels {
   Number tolerance() const { return tolerance_; }
 
  private:
+  ContactState<S> state_in_time(const Slide& slide, const ContactState<S>& from, const Panel& panel,
+                                const S& place) const;
   using T = typename Grid::T;  ///< the nodes in lanes, or each lane a panel
 
   /// What a panel by angle meets at its nodes.

@@ -50,8 +50,8 @@ JumpSolver<double> ways(const Scene& scene, double tolerance) {
           panels = std::make_shared<SlidingPanels<double>>(tolerance)](
              Start start, std::span<const Design> designs, std::span<ContactState<double>> states,
              std::span<Outcome> outcomes) {
-    RecordedWay recorded;
     for (std::size_t i = 0; i < designs.size(); ++i) {
+      RecordedWay recorded;
       outcomes[i] = recorded_way(*solver, start, designs[i], states[i], scene, recorded);
       if (outcomes[i].status != Status::jumped) continue;
       put_way(

@@ -20,6 +20,14 @@ struct ContactState {
   S turned_in_flight = S(0);  ///< with an idle motor, since release or since it was reduced [rad]
 };
 
+/// A state in contact a little later, to first order; angular: phi'', slip: v'.
+template <class S>
+ContactState<S> a_little_later(ContactState<S> at, const S& angular, const S& slip, const S& by) {
+  at.time += by, at.travel += (at.slip + at.spin) * by, at.angle += at.spin * by;
+  at.spin += angular * by, at.slip += slip * by;
+  return at;
+}
+
 /// A state without whole turns, time and travel, on which nothing depends that comes after it.
 template <class S>
 ContactState<S> reduced(const ContactState<S>& at) {

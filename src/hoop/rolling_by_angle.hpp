@@ -222,6 +222,26 @@ T refined_turn(const Roll<T>& roll, T x, const T& from, const T& to) {
   return x;
 }
 
+/// How far from the start of a roll the hoop turns round, `about` there: to the last digits however near that
+/// is, as angles are not. S: a number, or a dual.
+template <class S>
+S length_to_rest(const Roll<S>& roll, ValueOf<S> about) {
+  using Number = ValueOf<S>;
+  const auto E_at = [&](const Number& x) { return vis_viva_past_release(roll, S(x)); };
+  const auto rate_at = [&](const Number& x) {
+    return 2 * value_of(torque(roll.hoop, trig(S(value_of(roll.release) + x))));
+  };
+  Number length = about;
+  for (int k = 0; k < 3; ++k) {
+    const Number next = length - value_of(E_at(length)) / rate_at(length);
+    if (std::abs(next - about) <= 1e-12 * (1 + std::abs(value_of(roll.release))) && next > 0) length = next;
+  }
+  if constexpr (has_derivatives<S>)
+    return with_derivatives(length, E_at(length), rate_at(length));
+  else
+    return length;
+}
+
 /// How far from the release a hoop turns round, whose first minimum is real and E there not above zero:
 /// between E's summit, or the release if that is later, and there. Good to the last digits however small it
 /// is. Lanes outside `wanted` return anything.

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "friction/model.hpp"
+#include "friction/motion_at.hpp"
 #include "integrate/contestant.hpp"
 #include "noslip/model.hpp"
 #include "numerics/lanes.hpp"
@@ -28,7 +29,7 @@ constexpr Model with_pendulum(Friction friction, std::string_view name, std::str
 constinit const std::array list{
     Model{Friction::sticking, "sticking", "never slips (the paper's model)", false, noslip::exact,
           noslip::jumps, noslip::gradients, noslip::dual_jumps, noslip::state_jumps, noslip::integration,
-          noslip::integrated_jumps, noslip::refined, noslip::tell_exactly,
+          noslip::integrated_jumps, noslip::refined, noslip::tell_exactly, recorded_motions<noslip::record>,
           [](const Design& design, const Scene& scene, const IntegrationOptions& options, double interval) {
             return noslip::tell_by_integration(design, scene, options, interval);
           },
@@ -36,8 +37,8 @@ constinit const std::array list{
     Model{Friction::coulomb, "coulomb", "slips, by Coulomb friction", true, friction::exact, friction::jumps,
           friction::gradients, friction::dual_jumps, friction::state_jumps, friction::integration,
           friction::integrated_jumps, friction::refined, friction::tell_exactly,
-          friction::tell_by_integration, friction::solving, friction::effort, friction::ways,
-          friction::long_jumps},
+          recorded_motions<friction::record>, friction::tell_by_integration, friction::solving,
+          friction::effort, friction::ways, friction::long_jumps},
     with_pendulum(Friction::sticking, "sticking", "never slips", false),
     with_pendulum(Friction::coulomb, "coulomb", "slips, by Coulomb friction", true)};
 

@@ -13,6 +13,7 @@
 #include "leapmap/motion.hpp"
 #include "leapmap/scene.hpp"
 #include "trajectory/gradient.hpp"
+#include "trajectory/motion_at.hpp"
 #include "trajectory/sequence_gradient.hpp"
 #include "trajectory/solver.hpp"
 
@@ -46,6 +47,8 @@ struct Model {
   Outcome (*refined)(const Design&, const Scene&);
   /// One design's motion, sampled every `interval` [s]; 0: not sampled.
   Motion (*tell_exactly)(const Design&, const Scene&, double tolerance, double interval);
+  /// The same at given times.
+  MotionsAtTimes at_times;
   Motion (*tell_by_integration)(const Design&, const Scene&, const IntegrationOptions&, double interval);
   /// By a method at a setting, for studies.
   Solving (*solving)(const Contestant&, const Scene&, long max_steps);

@@ -13,22 +13,6 @@ D DualTime<D>::past(const Roll<D>& roll, const D& length) const {
   return length > D(0.0) ? HalvedTime<D>(roll, tolerance, rule_).until(length) : D(0.0);
 }
 
-/// How far from the start of a roll the hoop turns round, `about` there: to the last digits however near that
-/// is, as angles are not.
-template <class D>
-D DualTime<D>::length_to_rest(const Roll<D>& roll, double about) const {
-  const auto E_at = [&](double x) { return vis_viva_past_release(roll, D(x)); };
-  const auto rate_at = [&](double x) {
-    return 2.0 * torque(roll.hoop, trig(D(roll.release.value + x))).value;
-  };
-  double length = about;
-  for (int k = 0; k < 3; ++k) {
-    const double next = length - E_at(length).value / rate_at(length);
-    if (std::abs(next - about) <= 1e-12 * (1.0 + std::abs(roll.release.value)) && next > 0.0) length = next;
-  }
-  return with_derivatives(length, E_at(length), rate_at(length));
-}
-
 template <class D>
 D DualTime<D>::time(const Hoop<D>& hoop, const D& angle, const D& spin, std::span<const double> turns,
                     const D& to) const {

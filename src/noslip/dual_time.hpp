@@ -23,7 +23,6 @@ class DualTime {
 
  private:
   D past(const Roll<D>& roll, const D& length) const;
-  D length_to_rest(const Roll<D>& roll, double about) const;
 
   GaussRule<double> rule_;
 };

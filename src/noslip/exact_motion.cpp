@@ -61,6 +61,19 @@ std::vector<Candidate> candidates_of(const std::vector<Leg>& legs, const FoundLi
   return candidates;
 }
 
+/// Whether the hoop rolls before it jumps or its search ends; else it leaves where it landed.
+bool rolls_before(const Outcome& outcome, const FoundLiftOffs& told) {
+  return outcome.status != Status::jumped || !told.bounces || told.lift_offs.size() > 1;
+}
+
+/// Where a hoop jumps; second: the solvers' unit of time.
+ContactState<double> lift_off_of(const Outcome& outcome, double second) {
+  return {.time = outcome.jump_time / second,
+          .travel = outcome.jump_distance,
+          .angle = outcome.jump_angle,
+          .spin = outcome.jump_spin};
+}
+
 /// Tells the ways to jumps, one after the other, of one design.
 class Teller {
  public:
@@ -87,13 +100,8 @@ class Teller {
     for (const Candidate& candidate : candidates_of(legs, told, outcome, scene_, time_))
       motion_.candidates.push_back(candidate);
 
-    const bool jumps = outcome.status == Status::jumped;
-    const bool rolls =
-        !jumps || !told.bounces || told.lift_offs.size() > 1;  // else it leaves where it landed
-    const ContactState<double> lift_off{.time = outcome.jump_time / second_,
-                                        .travel = outcome.jump_distance,
-                                        .angle = outcome.jump_angle,
-                                        .spin = outcome.jump_spin};
+    const bool jumps = outcome.status == Status::jumped, rolls = rolls_before(outcome, told);
+    const ContactState<double> lift_off = lift_off_of(outcome, second_);
     if (rolls) motion_.phases.push_back(in_si(Phase::rolling, from, 0, scene_));
     if (jumps) {
       motion_.phases.push_back(in_si(Phase::flight, lift_off, 0, scene_));
@@ -139,6 +147,31 @@ class Teller {
 };
 
 }  // namespace
+
+Outcome record(const Design& design, const Scene& scene, double tolerance, RecordedWay& recorded) {
+  ExactSolver<Batch> solver(tolerance);
+  const Hoop<double> hoop = reduce<double>(design, scene);
+  const double second = time_unit(scene);
+  recorded.holds = true;
+  Outcome found;
+  Sequences<double>([&](Start start, std::span<const Design>, std::span<ContactState<double>> at,
+                        std::span<Outcome> outcomes) {
+    const ContactState<double> from = at[0];
+    FoundLiftOffs told;
+    solver.solve(start, {&design, 1}, at, scene, outcomes, &told);
+    const Outcome& outcome = outcomes[0];
+    recorded.end = at[0];
+    if (way_of(hoop, from.angle, from.spin) == 0.0 || outcome.status == Status::airborne_at_release ||
+        outcome.status == Status::failed)
+      return;
+    if (rolls_before(outcome, told)) recorded.phases.push_back({Phase::rolling, from, 0, told.turns});
+    if (outcome.status != Status::jumped) return;
+    recorded.phases.push_back({Phase::flight, lift_off_of(outcome, second), 0, {}});
+    recorded.flights.push_back(
+        {outcome.jump_height, outcome.apex_time / second, outcome.flight_time / second, outcome.dip});
+  }).solve({&design, 1}, scene, {&found, 1});
+  return found;
+}
 
 Motion tell_exactly(const Design& design, const Scene& scene, double tolerance, double interval) {
   Motion motion;

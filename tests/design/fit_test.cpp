@@ -11,6 +11,8 @@
 
 #include "design/least_squares.hpp"
 #include "film/motion_at.hpp"
+#include "hoop/rolling_by_angle.hpp"
+#include "hoop/units.hpp"
 #include "leapmap/leapmap.hpp"
 #include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
@@ -63,20 +65,22 @@ TEST_P(Motions, AtGivenTimesAreThoseOfATrace) {
   int compared = 0;
   for (int i = 0; i < random_designs; ++i) {
     const Design design = jumping_design(random, GetParam());
-    const Motion traced = trace(design, scene_of(GetParam()), {.interval = 5e-3, .tolerance = 1e-12});
+    Scene scene = scene_of(GetParam());
+    scene.jumps = 1 + i % 3;
+    const Motion traced = trace(design, scene, {.interval = 5e-3, .tolerance = 1e-12});
     if (traced.outcome.status != Status::jumped) continue;
     std::vector<double> times;
     std::vector<MotionPoint> points;
     for (const MotionPoint& point : traced.points)
       if ((times.empty() || point.t > times.back()) && point.t < traced.end)
         times.push_back(point.t), points.push_back(point);
-    const auto motion = motion_at<double>(design, scene_of(GetParam()), times);
+    const auto motion = motion_at<double>(design, scene, times);
     ASSERT_EQ(motion.size(), points.size());
     for (std::size_t k = 0; k < motion.size(); ++k) {
-      // Both follow the time to 1e-11, and a spin of up to ten takes the angle along.
-      ASSERT_NEAR(motion[k].phi, points[k].phi, 1e-8) << "design " << i << " at " << times[k];
-      ASSERT_NEAR(motion[k].x * 0.041, points[k].x, 1e-9);
-      ASSERT_NEAR(motion[k].y * 0.041, points[k].y, 1e-9);
+      // Both know the time to 1e-12, and a spin of up to ten takes the angle along.
+      ASSERT_NEAR(motion[k].phi, points[k].phi, 1e-11) << "design " << i << " at " << times[k];
+      ASSERT_NEAR(motion[k].x * 0.041, points[k].x, 1e-12);
+      ASSERT_NEAR(motion[k].y * 0.041, points[k].y, 1e-12);
     }
     ++compared;
   }
@@ -86,13 +90,15 @@ TEST_P(Motions, AtGivenTimesAreThoseOfATrace) {
 TEST_P(Motions, HaveTheDerivativesThatDifferencesShow) {
   std::mt19937_64 random(4);
   int compared = 0, rough = 0;
-  const Scene scene = scene_of(GetParam());
+  Scene scene = scene_of(GetParam());
   const std::size_t parameters = GetParam() == Friction::coulomb ? 9 : 8;
   for (int i = 0; i < random_designs; ++i) {
     const Design design = jumping_design(random, GetParam());
+    scene.jumps = 1 + i % 2;
     const Motion traced = trace(design, scene, {.interval = 0.0});
     if (traced.outcome.status != Status::jumped) continue;
-    const auto times = even_times(traced.outcome.jump_time + 0.9 * traced.outcome.flight_time, 23);
+    const Candidate& last = traced.candidates.back();
+    const auto times = even_times(last.t + 0.9 * last.flight_time, 23);
     const auto motion = motion_at<DesignDual>(design, scene, times);
     ASSERT_EQ(motion.size(), times.size());
     for (std::size_t k = 0; k < parameters; ++k) {
@@ -137,6 +143,83 @@ INSTANTIATE_TEST_SUITE_P(Models, Motions, ::testing::Values(Friction::sticking, 
                          [](const auto& model) {
                            return model.param == Friction::sticking ? "sticking" : "coulomb";
                          });
+
+TEST(FilmMotions, GoOnForEverWhereAHoopRocks) {
+  const Design design{.slope = 0.05, .release_angle = 0.6, .release_spin = 0.2};
+  const Scene scene;
+  ASSERT_EQ(solve(design, scene).status, Status::stalled);
+  const double second = time_unit(scene), step = 1e-4 * second;
+  std::vector<double> times;
+  for (const double t : even_times(60.0 * second, 400)) times.insert(times.end(), {t - step, t, t + step});
+  const auto motion = motion_at<double>(design, scene, times);
+  ASSERT_EQ(motion.size(), times.size());
+  const Hoop<double> hoop = reduce<double>(design, scene);
+  const double energy = rolling_energy(hoop, design.release_angle, design.release_spin);
+  int turns = 0;
+  for (std::size_t k = 1; k < motion.size(); k += 3) {
+    EXPECT_NEAR(rolling_energy(hoop, motion[k].phi, motion[k].spin), energy, 1e-12) << times[k];
+    // Of differences over 2e-4 the third derivative leaves some 1e-9.
+    EXPECT_NEAR((motion[k + 1].phi - motion[k - 1].phi) / 2e-4, motion[k].spin, 1e-8) << times[k];
+    EXPECT_NEAR((motion[k + 1].spin - motion[k - 1].spin) / 2e-4, motion[k].spin_rate, 1e-7) << times[k];
+    turns += k > 3 && motion[k].spin * motion[k - 3].spin < 0.0;
+  }
+  EXPECT_GT(turns, 10);
+}
+
+TEST(FilmMotions, EndWhereAResistingTorqueHoldsTheHoop) {
+  const Design design{.slope = 0.02, .release_angle = 0.02, .release_spin = 0.05, .resisting_torque = 0.1};
+  const Scene scene;
+  ASSERT_EQ(solve(design, scene).status, Status::stalled);
+  const auto motion =
+      motion_at<FewDual>(design, scene, even_times(5.0, 50), 1e-11, std::array{by_release_spin});
+  ASSERT_EQ(motion.size(), 50u);
+  const Hoop<double> hoop = reduce<double>(design, scene);
+  const MotionAt<FewDual>& last = motion.back();
+  EXPECT_EQ(last.spin.value, 0.0);
+  EXPECT_EQ(last.spin.by[0], 0.0);
+  EXPECT_NEAR(rolling_energy(hoop, last.phi.value, 0.0),
+              rolling_energy(hoop, design.release_angle, design.release_spin), 1e-14);
+  // What it came to rest at follows from its energy: torque dphi = J w dw at the release.
+  const double J = contact_inertia(hoop, trig(design.release_angle));
+  EXPECT_NEAR(last.phi.by[0] * torque(hoop, trig(last.phi.value)), -J * design.release_spin, 1e-12);
+}
+
+/// A hoop that rocks in its place and slides all the time: derivatives at fixed angles would lose their
+/// digits from turn to turn.
+TEST(FilmMotions, KeepTheirDerivativesOverManyTurnsOfASlide) {
+  const Scene scene{.friction = Friction::coulomb};
+  const Design design{.slope = 0.15040848369427698,
+                      .mass_ratio = 10.241850943878941,
+                      .offset_ratio = 0.92655322382412053,
+                      .inertia_factor = 0.7063462368652369,
+                      .release_angle = 5.8288206691149735,
+                      .release_spin = -0.1024366317565,
+                      .mu_static = 0.13295607678620708,
+                      .restitution = 0.25828442400442864};
+  const auto times = even_times(3.0, 60);
+  constexpr std::array by{by_slope, by_release_angle, by_release_spin, by_mu_static};
+  const auto motion = motion_at<FewDual>(design, scene, times, 1e-9, by);
+  ASSERT_EQ(motion.size(), times.size());
+  for (std::size_t j = 0; j < by.size(); ++j) {
+    const auto difference = [&](double step) {
+      Design more = design, less = design;
+      more.*differentiable[by[j]] += step, less.*differentiable[by[j]] -= step;
+      const auto after = motion_at<double>(more, scene, times),
+                 before = motion_at<double>(less, scene, times);
+      std::vector<double> of_angle;
+      for (std::size_t k = 0; k < times.size(); ++k)
+        of_angle.push_back((after[k].phi - before[k].phi) / (2.0 * step));
+      return of_angle;
+    };
+    const auto coarse = difference(1e-4), fine = difference(5e-5);
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      const double extrapolated = (4.0 * fine[k] - coarse[k]) / 3.0;
+      // The fifth derivative times 1e-17, and 1e-12 over 1e-4; before, the last ones were off by 1e-2.
+      EXPECT_NEAR(motion[k].phi.by[j], extrapolated, 1e-7 * (1.0 + std::abs(extrapolated)))
+          << "by " << by[j] << " at " << times[k];
+    }
+  }
+}
 
 TEST(FilmMotions, OfManyThousandFramesHaveDerivativesToo) {
   const Scene scene{.friction = Friction::coulomb};

@@ -5,6 +5,8 @@
 
 #include <random>
 
+#include "numerics/panel_place.hpp"
+
 namespace leapmap {
 namespace {
 
@@ -121,6 +123,23 @@ TEST(Spectral, IntegralsInLanesAreThoseOfOnePanel) {
 }
 
 /// On integrands with a pole beside the panel, or beyond its end.
+/// Of functions that differ tenfold on a panel, at any place and at its ends.
+TEST(Spectral, APlaceIsFoundByTheIntegralUpToThere) {
+  const Panel panel;
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (int i = 0; i < 2000; ++i) {
+    const double rise = 5.0 * (uniform(random) - 0.5), size = std::exp(10.0 * (uniform(random) - 0.5));
+    const auto integral = [&](double x) { return size * std::expm1(rise * x) / rise; };
+    Panel::Values integrals, values;
+    for (std::size_t k = 0; k < n; ++k)
+      integrals[k] = integral(panel.node[k]), values[k] = size * std::exp(rise * panel.node[k]);
+    const double place = i % 50 == 0 ? 0.0 : i % 50 == 1 ? 1.0 : uniform(random);
+    // Some roundings of the integral over the least value.
+    EXPECT_NEAR(place_of_integral(panel, integrals, values, integral(1.0), integral(place)), place, 1e-13);
+  }
+}
+
 TEST(Spectral, IntegralsUpToAPlaceAreFarFinerThanTheirIntegrandsTail) {
   static const Panel panel;
   std::mt19937_64 random(7);
