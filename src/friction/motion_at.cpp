@@ -91,16 +91,17 @@ class Walk {
     at_.angle = design.parameter(by_release_angle), at_.spin = design.parameter(by_release_spin);
   }
 
-  /// Begins a phase where the solver does. False: something was not as it seemed.
+  /// Begins a phase where the solver does. False: derivatives were of something else.
   bool begin(const ContactState<double>& there) {
     constexpr double agreement = 1e-4;
     bool near = true;
     const auto take = [&](S& value, double number) {
-      near = near && std::abs(value_of(value) - number) <= agreement * (1.0 + std::abs(number));
-      if constexpr (has_derivatives<S>)
+      if constexpr (has_derivatives<S>) {
+        near = near && std::abs(value.value - number) <= agreement * (1.0 + std::abs(number));
         value.value = number;
-      else
+      } else {
         value = number;
+      }
     };
     take(at_.time, there.time), take(at_.travel, there.travel);
     take(at_.angle, there.angle), take(at_.spin, there.spin);
@@ -142,10 +143,14 @@ class Walk {
     SlideAgain<S> again(panels, hoop_, friction);
     again.begin(at_);
     if (!again.over(recorded, at_, read)) return false;
-    if (!to && next < times.size() && !again.over_time(times.back() - value_of(at_.time), at_, read))
-      return false;
-    while (next < times.size()) take(at_);  // beside the end
-    if (to) at_ = at_time(at_, to->time, Phase::sliding, direction);
+    // Frames beside the phase's end are left, or those after the search's, as far as it cannot be followed.
+    if (!to && next < times.size() && !again.over_time(times.back() - value_of(at_.time), at_, read) &&
+        at_.spin == S(0.0)) {
+      taken.resize(taken.size() + times.size() - next,
+                   {at_.angle, at_.travel, S(0.0), S(0.0), 0.0, 0.0, 0.0});
+      return true;
+    }
+    while (next < times.size()) take(at_);
     return true;
   }
   /// Ends a phase of contact where the next one begins.

@@ -24,7 +24,7 @@ template <class S, Outcome (*record)(const Design&, const Scene&, double, Record
 std::vector<MotionAt<S>> recorded_motion(const Design& design, const Scene& scene,
                                          std::span<const double> times, double accuracy,
                                          std::span<const std::size_t> by) {
-  constexpr double tolerance = 1e-12;  // whatever the accuracy: a thread keeps its solver
+  constexpr double tolerance = 1e-12;  // of what is recorded, whatever is read from it
   RecordedWay recorded;
   const Status status = record(design, scene, tolerance, recorded).status;
   if (recorded.phases.empty() || status == Status::failed || status == Status::indeterminate) return {};

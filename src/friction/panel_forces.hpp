@@ -44,8 +44,6 @@ class PanelForces {
   }
 
   ContactState<S> state_at(double place) const {
-    if (place == 0.0) return from_;
-    if (place == 1.0) return panel_.end;
     return panels_.state_within(slide_, from_, taken_, panel_, S(place));
   }
 

@@ -36,28 +36,37 @@ class SlideAgain {
   template <class Visit>
   bool over(const RecordedSlide<double>& recorded, ContactState<S>& at, const Visit& visit) {
     return std::all_of(recorded.begin(), recorded.end(), [&](const SlidePanel<double>& one) {
-      return over_panel(dual_part(one, at), HUGE_VAL, at, visit);
+      return over_panel(part_of(one, at), HUGE_VAL, at, visit);
     });
   }
-  /// The same over a time, by panels of its own; nothing that would end the slide is seen.
+  /// The same over a time, by panels of its own; nothing that would end the slide is seen, but a resistance
+  /// stops the spin for good. False: it has, and the spin is zero, or a panel is not resolved.
   template <class Visit>
   bool over_time(double duration, ContactState<S>& at, const Visit& visit) {
     constexpr double longest = 0.25, shortest = 1e-9;  // [sqrt(R/g)]
+    constexpr int most_tries = 20'000;
     Panel panel;
-    for (double step = longest, left = duration; left > 0.0; step = std::min(2.0 * step, longest)) {
-      Taken taken{{}, S(std::min(step, left))};
-      for (panels_.solve(slide_, at, taken, panel); !is_resolved(panel.excess);
-           panels_.solve(slide_, at, taken, panel))
-        if (step *= 0.5, taken.duration = S(step); step < shortest) return false;
-      if (++panels_taken_ > most_panels) return false;
-      left -= value_of(taken.duration);
-      move(at, taken, panel, visit);
+    double step = longest;
+    for (int tried = 0; duration > 0.0; ++tried) {
+      step = std::min(step, duration);
+      const Taken taken{{}, S(step)};
+      panels_.solve(slide_, at, taken, panel);
+      const bool stops = value_of(panel.end.spin) * value_of(slide_.hoop.resistance) < 0.0;
+      if (is_resolved(panel.excess) && !stops) {
+        duration -= step;
+        step = std::min(2.0 * step, longest);
+        move(at, taken, panel, visit);
+        continue;
+      }
+      if ((step *= 0.5) >= shortest && tried < most_tries) continue;
+      if (stops && is_resolved(panel.excess)) at.spin = S(0);
+      return false;
     }
     return true;
   }
 
  private:
-  static constexpr int most_panels = 2'000;
+  static constexpr int most_halvings = 2'000;
 
   /// Derivatives lead to where something is zero, or tell a slope: they need fewer digits than values.
   static bool is_resolved(double excess) { return excess <= (has_derivatives<S> ? 1e3 : 1.0); }
@@ -67,14 +76,28 @@ class SlideAgain {
     visit(slide_, at, taken, panel);
     at = panel.end;
     slide_.free_force = panel.free_force.end.value;
-    if constexpr (has_derivatives<S>) {
-      // Where its time is the same, not its angle: beside a turn the latter's derivatives are large, and what
-      // was lost of them would grow from turn to turn.
-      const S u = at.spin * at.spin;
-      const SlidingMotion<S> motion = sliding_motion(slide_.hoop, trig(at.angle), u, slide_.friction);
-      at = a_little_later(at, motion.angular, motion.slip, S(S(at.time.value) - at.time));
-      slide_.free_force = free_normal_force(slide_.hoop, trig(at.angle), S(at.spin * at.spin));
-    }
+    if constexpr (has_derivatives<S>) hold_times(at);
+  }
+
+  /// Beside a turn derivatives at a given angle are large, and what is lost of them would grow from turn to
+  /// turn. Where those at a given time are far smaller they take their place; beside Painleve's edge they are
+  /// larger.
+  void hold_times(ContactState<S>& at) {
+    constexpr double far = 0.1;
+    const SlidingMotion<S> motion =
+        sliding_motion(slide_.hoop, trig(at.angle), S(at.spin * at.spin), slide_.friction);
+    const ContactState<S> held =
+        a_little_later(at, motion.angular, motion.slip, S(S(at.time.value) - at.time));
+    S later(0.0);
+    for (std::size_t k = 0; k < later.by.size(); ++k)
+      if (largest_derivative(held, k) < far * largest_derivative(at, k)) later.by[k] = -at.time.by[k];
+    if (!(largest_part(later) > 0.0)) return;
+    at = a_little_later(at, motion.angular, motion.slip, later);
+    slide_.free_force = free_normal_force(slide_.hoop, trig(at.angle), S(at.spin * at.spin));
+  }
+  static double largest_derivative(const ContactState<S>& at, std::size_t k) {
+    return std::max({std::abs(at.time.by[k]), std::abs(at.travel.by[k]), std::abs(at.angle.by[k]),
+                     std::abs(at.spin.by[k]), std::abs(at.slip.by[k])});
   }
 
   /// excess: of the panel that this one is half of.
@@ -82,11 +105,12 @@ class SlideAgain {
   bool over_panel(const Taken& taken, double excess, ContactState<S>& at, const Visit& visit) {
     Panel panel;
     panels_.solve(slide_, at, taken, panel);
-    if (!std::isfinite(panel.excess) || ++panels_taken_ > most_panels) return false;
+    if (!std::isfinite(panel.excess)) return false;
     if (!has_derivatives<S> || is_resolved(panel.excess) || !(panel.excess < 0.5 * excess)) {
       move(at, taken, panel, visit);
       return true;
     }
+    if (++halvings_ > most_halvings) return false;
     Taken first = taken, second = taken;
     if (taken.stretch) {
       const S half = S(0.5) * taken.stretch->span;
@@ -103,7 +127,7 @@ class SlideAgain {
   /// the stretch moves with the zero of u just before its start, as SlidingPanels::stretch_of places it, and
   /// all is smooth along it again. Its end keeps its q. A zero that is farther behind needs no such care,
   /// and would move so much that digits are lost.
-  Taken dual_part(const SlidePanel<double>& taken, const ContactState<S>& at) const {
+  Taken part_of(const SlidePanel<double>& taken, const ContactState<S>& at) const {
     if (!taken.stretch) return {{}, S(taken.duration)};
     const SlideStretch<double>& plain = *taken.stretch;
     SlideStretch<S> stretch{S(plain.shift), S(plain.begin), S(plain.span), S(plain.curve)};
@@ -135,7 +159,7 @@ class SlideAgain {
 
   const Panels& panels_;
   Slide slide_;
-  int panels_taken_ = 0;
+  int halvings_ = 0;
 };
 
 }  // namespace leapmap

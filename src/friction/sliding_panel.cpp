@@ -328,16 +328,17 @@ ContactState<S> SlidingPanels<S>::state_in_time(const Slide& slide, const Contac
 
 template <class S>
 ContactState<S> SlidingPanels<S>::state_within(const Slide& slide, const ContactState<S>& from,
-                                               const Taken& taken, const Panel& panel, const S& place) const
-    requires(has_edges) {
+                                               const Taken& taken, const Panel& panel, const S& place) const {
+  if (place == S(0)) return from;
+  if (place == S(1)) return panel.end;
   if (!taken.stretch) return state_in_time(slide, from, panel, place);
-  if (const Inside inside = state_at(slide, from, *taken.stretch, panel, place); inside.is_sharp)
-    return inside.state;
+  const Inside inside = state_at(slide, from, *taken.stretch, panel, place);
+  if (inside.is_sharp) return inside.state;
   Taken part = taken;
   part.stretch->span *= place;
   Panel of_part;
   solve(slide, from, part, of_part);
-  return of_part.end;
+  return std::isfinite(of_part.excess) ? of_part.end : inside.state;
 }
 
 // NOLINTBEGIN(readability-function-size)

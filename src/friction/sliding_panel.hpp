@@ -117,9 +117,10 @@ class SlidingPanels {
   /// panel that lasts far longer than all before it, and where the spin is small against those at its ends.
   Inside state_at(const Slide& slide, const ContactState<S>& from, const Stretch& stretch, const Panel& panel,
                   const S& place) const;
-  /// The same of any panel, with all its digits: where they are lost, by a panel of its own.
+  /// The same of any panel of one slide that is solved, from its start on, with all its digits: where they
+  /// are lost, by a panel of its own.
   ContactState<S> state_within(const Slide& slide, const ContactState<S>& from, const Taken& taken,
-                               const Panel& panel, const S& place) const requires(has_edges);
+                               const Panel& panel, const S& place) const;
   /// Solves a panel of that duration. It has no growth and nothing driven; where it is indeterminate only
   /// `excess` holds.
   void solve_by_time(const Slide& slide, const ContactState<S>& from, const S& duration, Panel& panel) const;

@@ -53,18 +53,12 @@ void RollAtTimes<S>::begin_leg() {
   }
   ahead_.emplace(roll, accuracy_);
   back_.reset();
-  length_ = S(turn ? 0.0 : std::isfinite(end_) ? way_ * (end_ - angle) : std::numeric_limits<double>::max());
-  half_time_ = S(std::numeric_limits<double>::infinity());
+  constexpr double unbounded = std::numeric_limits<double>::max();
+  length_ = S(std::isfinite(end_) ? way_ * (end_ - angle) : unbounded);
   if (!turn) return;
-  // E vanishes at both ends of the leg, or may: each half is timed from its end.
-  length_ = length_to_rest(roll, way_ * (*turn - angle));
-  rest_angle_ = from_.angle + way_ * length_;
-  const S half = 0.5 * length_;
+  const S to_rest = length_to_rest(roll, way_ * (*turn - angle));
+  rest_angle_ = from_.angle + way_ * to_rest, length_ = 0.5 * to_rest;
   back_.emplace(begin_roll(seen(hoop_, S(-way_)), S(-way_ * rest_angle_), S(0.0)), accuracy_);
-  constexpr double ever = std::numeric_limits<double>::infinity();
-  const bool known = ahead_->reach(ever, half) && back_->reach(ever, half);
-  half_time_ = known ? from_.time + ahead_->time() : S(std::numeric_limits<double>::quiet_NaN());
-  rest_time_ = half_time_ + back_->time();
 }
 
 template <class S>
@@ -80,24 +74,27 @@ auto RollAtTimes<S>::seen_back(const typename RollPanels<S>::At& on_roll, const 
 
 template <class S>
 auto RollAtTimes<S>::at(double time) -> At {
-  while (!rests_ && back_ && time >= value_of(rest_time_)) {
+  constexpr double ever = std::numeric_limits<double>::infinity();
+  for (; !rests_ && is_known_; begin_leg()) {
+    const S since = S(time) - from_.time;
+    if (!(since > S(0.0))) {  // at the leg's begin, or before it by a rounding
+      const double acceleration = value_of(angular_acceleration(hoop_, trig(from_.angle), from_.spin));
+      return seen_back(
+          {way_ * from_.spin * since, way_ * (from_.spin + acceleration * since), way_ * acceleration},
+          from_.angle, way_, time);
+    }
+    is_known_ = ahead_->reach(value_of(since), length_);
+    if (is_known_ && !(back_ && since > ahead_->time()))
+      return seen_back(ahead_->at(since), from_.angle, way_, time);
+    // E vanishes at the leg's end, too: its second half is timed from there.
+    is_known_ = is_known_ && back_->reach(ever, length_);
+    const S rests_at = from_.time + ahead_->time() + back_->time(), left = rests_at - S(time);
+    if (is_known_ && left > S(0.0)) return seen_back(back_->at(left), rest_angle_, -way_, time);
     from_.travel += rest_angle_ - from_.angle;
-    from_.angle = rest_angle_, from_.time = rest_time_, from_.spin = S(0.0);
-    begin_leg();
+    from_.angle = rest_angle_, from_.time = rests_at, from_.spin = S(0.0);
   }
   if (rests_) return {from_, 0.0};
-  if (back_ && time >= value_of(half_time_))
-    return seen_back(back_->at(rest_time_ - S(time)), rest_angle_, -way_, time);
-  const S since = S(time) - from_.time;
-  if (!(since > S(0.0))) {  // at the leg's begin, or before it by a rounding
-    const double acceleration = value_of(angular_acceleration(hoop_, trig(from_.angle), from_.spin));
-    return seen_back(
-        {way_ * from_.spin * since, way_ * (from_.spin + acceleration * since), way_ * acceleration},
-        from_.angle, way_, time);
-  }
-  if (!ahead_->reach(value_of(since), length_))
-    return {{.angle = S(std::numeric_limits<double>::quiet_NaN())}, 0.0};
-  return seen_back(ahead_->at(since), from_.angle, way_, time);
+  return {{.angle = S(std::numeric_limits<double>::quiet_NaN())}, 0.0};
 }
 
 #ifdef LEAPMAP_KERNELS

@@ -37,10 +37,11 @@ class RollAtTimes {
   double end_, accuracy_;
   ContactState<S> from_;  // where the leg begins
   bool rests_ = false;    // there, for good
-  double way_ = 1.0;      // of the leg
-  S length_{0.0};         // of the leg, at most
-  S rest_angle_{0.0}, rest_time_{0.0}, half_time_{0.0};
-  std::optional<RollPanels<S>> ahead_;  // from the leg's begin
+  bool is_known_ = true;
+  double way_ = 1.0;  // of the leg
+  S length_{0.0};     // to the phase's end, or half of the way to rest
+  S rest_angle_{0.0};
+  std::optional<RollPanels<S>> ahead_;  // from the leg's begin over that length
   std::optional<RollPanels<S>> back_;   // from where it comes to rest, backwards in time; or it does not
 };
 

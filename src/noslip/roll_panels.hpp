@@ -18,7 +18,7 @@ class RollPanels {
   RollPanels(const Roll<S>& roll, double accuracy);
 
   /// Adds panels up to a time, or to an angle past the release if that comes first, the same at every call.
-  /// False: they would have to be too many or too short.
+  /// False: they would have to be too many or too short, and nothing is known after them.
   bool reach(double time, const S& past);
   /// The time from the release to where the panels end.
   const S& time() const { return end_; }
@@ -44,9 +44,14 @@ class RollPanels {
     typename PlainGrid::Values times, rate;  ///< it without derivatives; its derivative by the place
   };
 
+  double rounding(double past, double E) const;
   S angle_at(const S& q) const { return q * (q0_ + q0_ + q); }
-  /// Solves a panel whose begin and span are known. Returns how far from resolved it is, at most 1 if it is.
-  double solve(Panel& panel, S& duration) const;
+  /// How far from resolved a panel is, at most 1 if it is.
+  struct Excess {
+    double plain, all;  ///< without derivatives, and with them
+  };
+  /// Solves a panel whose begin and span are known.
+  Excess solve(Panel& panel, S& duration) const;
 
   Roll<S> roll_;
   double accuracy_;

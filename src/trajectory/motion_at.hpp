@@ -40,7 +40,7 @@ inline constexpr auto by_every_parameter = [] {
 
 /// The motion at times since release [s], in ascending order; empty if the design cannot be solved. After the
 /// landing of the jump, or the search's end, the last phase goes on for ever: a flight goes on through the
-/// plane.
+/// plane, and a slide that cannot be followed any further as it moves.
 ///
 /// by: the places among `differentiable` of the parameters that derivatives are by, in their order in S.
 template <class S>

@@ -184,6 +184,92 @@ TEST(FilmMotions, EndWhereAResistingTorqueHoldsTheHoop) {
   EXPECT_NEAR(last.phi.by[0] * torque(hoop, trig(last.phi.value)), -J * design.release_spin, 1e-12);
 }
 
+TEST(FilmMotions, EndWhereAResistingTorqueHoldsAHoopThatSlidesAfterTheSearchsEnd) {
+  const Scene scene{.friction = Friction::coulomb, .motor_in_flight = false};
+  const Design design{.slope = 0.16355439059385629,
+                      .mass_ratio = 0.63707172558885927,
+                      .offset_ratio = 0.40771923170099661,
+                      .inertia_factor = 0.77297619223111136,
+                      .release_angle = 2.2937298517296032,
+                      .release_spin = 1.5965092294908581,
+                      .resisting_torque = 0.01117926162208626,
+                      .mu_static = 0.98773630547262081,
+                      .restitution = 0.78539083496470463};
+  const auto motion = motion_at<double>(design, scene, even_times(2.0, 400));
+  ASSERT_EQ(motion.size(), 400u);
+  EXPECT_EQ(motion.back().spin, 0.0);
+  for (const MotionAt<double>& at : motion) EXPECT_GE(at.spin, 0.0);
+}
+
+/// A roll over a crest that it all but stalls on, as far as roundings of its energy let it be known.
+TEST(FilmMotions, AreKnownBesideAStall) {
+  Scene scene;
+  scene.hop_height = 10.0;
+  for (const double beside : {1e-4, 1e-6, 1e-8, 1e-10}) {
+    const Design design{.slope = 0.1,
+                        .mass_ratio = 3.0,
+                        .offset_ratio = 0.9,
+                        .release_angle = 0.3,
+                        .release_spin = 1.9051270592669241 * (1.0 + beside)};
+    const auto times = even_times(2.0, 60);
+    constexpr std::array by{by_release_spin};
+    for (const double accuracy : {1e-6, 1e-11})
+      EXPECT_EQ(motion_at<double>(design, scene, times, accuracy).size(), times.size()) << beside;
+    EXPECT_EQ(motion_at<FewDual>(design, scene, times, 1e-7, by).size(), times.size()) << beside;
+    const auto motion = motion_at<double>(design, scene, times);
+    const Motion traced = trace(design, scene, {.interval = 0.05, .tolerance = 1e-12});
+    std::vector<double> at;
+    for (const MotionPoint& point : traced.points) at.push_back(point.t);
+    at.resize(at.size() / 2);
+    const auto same = motion_at<double>(design, scene, at);
+    ASSERT_EQ(same.size(), at.size());
+    // E is known to 1e-16 of about 1, and the time on the crest to that over what is left of E.
+    for (std::size_t k = 0; k < at.size(); ++k)
+      EXPECT_NEAR(same[k].phi, traced.points[k].phi, 1e-11 + 1e-14 / beside) << beside << " at " << at[k];
+  }
+}
+
+/// Phases that last for a rounding: with hop_height = 0 every lift-off is a jump.
+TEST(FilmMotions, PassPhasesOfNoTime) {
+  Scene scene{.motor_in_flight = false};
+  scene.hop_height = 0.0, scene.jumps = 4;
+  const Design design{.slope = 0.7542356066379261,
+                      .mass_ratio = 23.064648642872971,
+                      .offset_ratio = 0.88763580951345333,
+                      .inertia_factor = 0.78298282691039844,
+                      .release_angle = 2.0572113304796158,
+                      .release_spin = 3.3105295026512359e-08};
+  const Motion traced = trace(design, scene, {.interval = 0.0, .tolerance = 1e-12});
+  std::vector<double> times;
+  for (const PhaseStart& phase : traced.phases)
+    for (const double t : {phase.t, phase.t, std::nextafter(phase.t, 1.0)}) times.push_back(t);
+  std::ranges::sort(times);
+  EXPECT_EQ(motion_at<double>(design, scene, times).size(), times.size());
+  constexpr std::array by{by_slope};
+  EXPECT_EQ(motion_at<FewDual>(design, scene, times, 1e-9, by).size(), times.size());
+}
+
+TEST(FilmMotions, OfASlideFromRestBeginWithTheReleaseSpin) {
+  const Scene scene{.friction = Friction::coulomb};
+  const Design design{.slope = 0.9, .mass_ratio = 0.13, .release_angle = -2.97, .mu_static = 0.38};
+  constexpr std::array by{by_release_spin};
+  const auto motion = motion_at<FewDual>(design, scene, std::array{0.0, 1e-9, 0.1}, 1e-9, by);
+  ASSERT_EQ(motion.size(), 3u);
+  ASSERT_EQ(trace(design, scene, {.interval = 0.0}).phases.front().phase, Phase::sliding);
+  EXPECT_NEAR(motion[0].spin.by[0], 1.0, 1e-14);
+  EXPECT_NEAR(motion[1].spin.by[0], 1.0, 1e-6) << "the same a billionth of a second later";
+}
+
+/// Long after the search's end, as a log of an encoder may be.
+TEST(FilmMotions, OfALongSlideAreFollowedToTheEnd) {
+  const Scene scene{.friction = Friction::coulomb};
+  const Design design{.slope = 0.5, .mass_ratio = 0.5, .offset_ratio = 0.3, .mu_static = 0.05};
+  const auto times = even_times(60.0, 500);
+  constexpr std::array by{by_slope};
+  EXPECT_EQ(motion_at<double>(design, scene, times).size(), times.size());
+  EXPECT_EQ(motion_at<FewDual>(design, scene, times, 1e-7, by).size(), times.size());
+}
+
 /// A hoop that rocks in its place and slides all the time: derivatives at fixed angles would lose their
 /// digits from turn to turn.
 TEST(FilmMotions, KeepTheirDerivativesOverManyTurnsOfASlide) {
