@@ -11,7 +11,7 @@ namespace leapmap {
 ///
 /// Between the ends of phases rolling follows from the vis viva and the time's integral
 /// (noslip/roll_panels.hpp), sliding from the panels that the solver took, solved once more in S: a time's
-/// place on a panel is told by interpolation and one step of Newton's method. A phase's end gets its
+/// place on a panel is found by interpolation and one step of Newton's method. A phase's end gets its
 /// derivatives by one such step of what is zero there. Derivatives by mu_kinetic are added to those by
 /// mu_static where it follows that.
 template <class S>

@@ -68,7 +68,7 @@ class SlideAgain {
  private:
   static constexpr int most_halvings = 2'000;
 
-  /// Derivatives lead to where something is zero, or tell a slope: they need fewer digits than values.
+  /// Derivatives need fewer digits than values.
   static bool is_resolved(double excess) { return excess <= (has_derivatives<S> ? 1e3 : 1.0); }
 
   template <class Visit>

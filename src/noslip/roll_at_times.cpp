@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "noslip/rolling_motion.hpp"
-#include "trajectory/gradient.hpp"
+#include "trajectory/motion_at.hpp"
 
 namespace leapmap {
 
@@ -99,7 +99,7 @@ auto RollAtTimes<S>::at(double time) -> At {
 
 #ifdef LEAPMAP_KERNELS
 template class RollAtTimes<double>;
-template class RollAtTimes<StateDual>;
+template class RollAtTimes<FewDual>;
 template class RollAtTimes<DesignDual>;
 #endif
 

@@ -8,7 +8,7 @@
 
 #include "noslip/halved_time.hpp"
 #include "numerics/panel_place.hpp"
-#include "trajectory/gradient.hpp"
+#include "trajectory/motion_at.hpp"
 
 namespace leapmap {
 namespace {
@@ -122,7 +122,7 @@ auto RollPanels<S>::at(const S& time) const -> At {
 
 #ifdef LEAPMAP_KERNELS
 template class RollPanels<double>;
-template class RollPanels<StateDual>;
+template class RollPanels<FewDual>;
 template class RollPanels<DesignDual>;
 #endif
 
