@@ -109,7 +109,7 @@ class Walk {
     return near;
   }
 
-  /// Rolls to a time, and adds where it is at those before it; infinite: for ever.
+  /// Rolls to where the next phase begins, or for ever, and adds where it is at times on the way.
   void roll(std::span<const double> turns, const ContactState<double>* to, std::span<const double> times,
             std::vector<MotionAt<S>>& taken) {
     constexpr double ever = std::numeric_limits<double>::infinity();
