@@ -16,8 +16,8 @@ sh sweeps/install_packages.sh $tier
 rm -f build/release/first_tier.xml build/release/second_tier.xml
 cmake --preset release
 cmake --build --preset release --target all tests
-first_tier() {  # two more at a time than there are cores, as some wait: browsers, kills
-  ctest --preset release --no-tests=error -j $(($(nproc) + 2)) -LE slow --output-junit first_tier.xml
+first_tier() {  # three more at a time than there are cores, as some wait: browsers, kills
+  ctest --preset release --no-tests=error -j $(($(nproc) + 3)) -LE slow --output-junit first_tier.xml
 }
 if [ $tier = tests ]; then
   first_tier
