@@ -132,6 +132,25 @@ TEST(CoulombGradients, AreResolvedWhereAHoopTurnsRoundInsideASlide) {
   EXPECT_NEAR(gradient(design, &Outcome::jump_height, scene).mu_kinetic, 5.1274, 1e-4);
 }
 
+/// Beside Painleve's edge accelerations are so large that derivatives at a given time are lost in their
+/// roundings.
+TEST(CoulombGradients, AreKnownOfASlideBesidePainlevesEdge) {
+  const Design design{.slope = 0.7039494649710462,
+                      .mass_ratio = 111.82781160944819,
+                      .release_angle = -1.9780398189269073,
+                      .mu_static = 0.525,
+                      .restitution = 0.3};
+  const Scene scene{.friction = Friction::coulomb};
+  const auto height_at = [&](double slope) {
+    Design other = design;
+    other.slope = slope;
+    return solve(other, scene, {.tolerance = 1e-12}).jump_height;
+  };
+  constexpr double step = 1e-5;
+  const double difference = (height_at(design.slope + step) - height_at(design.slope - step)) / (2.0 * step);
+  EXPECT_NEAR(gradient(design, &Outcome::jump_height, scene).slope, difference, 1e-6);
+}
+
 TEST(CoulombGradients, LeaveTheOutcomesAsTheyAre) {
   const Scene scene = unit_scene(Friction::coulomb);
   const std::vector<Design> designs = designs_with_friction(60, false);
