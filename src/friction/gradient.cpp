@@ -98,15 +98,8 @@ class Chain {
  private:
   /// Takes the plain solver's values, if the chain came to the same.
   bool agrees(const ContactState<double>& there) {
-    bool near = true;
     if constexpr (!is_by_design<D>) at_.time = D(there.time);
-    const auto take = [&](D& value, double number) {
-      near = near && std::abs(value.value - number) <= agreement * (1.0 + std::abs(number));
-      value.value = number;
-    };
-    take(at_.time, there.time), take(at_.travel, there.travel), take(at_.angle, there.angle);
-    take(at_.spin, there.spin), take(at_.slip, there.slip), take(at_.normal, there.normal);
-    return near;
+    return take_values(at_, there, agreement);
   }
 
   bool roll(const RecordedWay::Begun& begun, const ContactState<double>& to) {

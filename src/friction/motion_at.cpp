@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "friction/contact_phases.hpp"
+#include "friction/recorded_way.hpp"
 #include "friction/slide_again.hpp"
 #include "hoop/landing.hpp"
 #include "hoop/sliding.hpp"
@@ -61,17 +62,13 @@ class TimesOnPanel {
   TimesOnPanel(const ContactState<S>& from, const typename SlidingPanels<S>::Panel& panel)
       : begun_(value_of(from.time)), duration_(value_of(panel.end.time) - begun_) {
     for (std::size_t i = 0; i < rate_.size(); ++i) rate_[i] = value_of(panel.time_rate[i]);
-    times_ = grid().integrals(rate_);
+    times_ = shared_panel<Grid>().integrals(rate_);
   }
   double place_of(double time) const {
-    return place_of_integral(grid(), times_, rate_, duration_, time - begun_);
+    return place_of_integral(shared_panel<Grid>(), times_, rate_, duration_, time - begun_);
   }
 
  private:
-  static const Grid& grid() {
-    static const Grid made;
-    return made;
-  }
   double begun_, duration_;
   typename Grid::Values times_, rate_;
 };
@@ -91,25 +88,18 @@ class Walk {
     at_.angle = design.parameter(by_release_angle), at_.spin = design.parameter(by_release_spin);
   }
 
-  /// Begins a phase where the solver does. False: derivatives were of something else.
+  /// Begins a phase where the solver does. False: the derivatives are of another state.
   bool begin(const ContactState<double>& there) {
     constexpr double agreement = 1e-4;
-    bool near = true;
-    const auto take = [&](S& value, double number) {
-      if constexpr (has_derivatives<S>) {
-        near = near && std::abs(value.value - number) <= agreement * (1.0 + std::abs(number));
-        value.value = number;
-      } else {
-        value = number;
-      }
-    };
-    take(at_.time, there.time), take(at_.travel, there.travel);
-    take(at_.angle, there.angle), take(at_.spin, there.spin);
-    take(at_.slip, there.slip), take(at_.normal, there.normal);
-    return near;
+    if constexpr (has_derivatives<S>) {
+      return take_values(at_, there, agreement);
+    } else {
+      at_ = there;
+      return true;
+    }
   }
 
-  /// Rolls to where the next phase begins, or for ever, and adds where it is at times on the way.
+  /// Rolls to where the next phase begins, or without end, and adds where the hoop is at times on the way.
   void roll(std::span<const double> turns, const ContactState<double>* to, std::span<const double> times,
             std::vector<MotionAt<S>>& taken) {
     constexpr double ever = std::numeric_limits<double>::infinity();
@@ -143,7 +133,8 @@ class Walk {
     SlideAgain<S> again(panels, hoop_, friction);
     again.begin(at_);
     if (!again.over(recorded, at_, read)) return false;
-    // Frames beside the phase's end are left, or those after the search's, as far as it cannot be followed.
+    // After that only these times are left: within a rounding of the phase's end, or after the search's end
+    // where the slide cannot be solved.
     if (!to && next < times.size() && !again.over_time(times.back() - value_of(at_.time), at_, read) &&
         at_.spin == S(0.0)) {
       taken.resize(taken.size() + times.size() - next,

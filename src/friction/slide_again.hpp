@@ -39,8 +39,8 @@ class SlideAgain {
       return over_panel(part_of(one, at), HUGE_VAL, at, visit);
     });
   }
-  /// The same over a time, by panels of its own; nothing that would end the slide is seen, but a resistance
-  /// stops the spin for good. False: it has, and the spin is zero, or a panel is not resolved.
+  /// The same over a time, by new panels. Whatever would end the slide is ignored, except that a resistance
+  /// stops the hoop. False: it stopped, and the spin is zero, or a panel is not resolved.
   template <class Visit>
   bool over_time(double duration, ContactState<S>& at, const Visit& visit) {
     constexpr double longest = 0.25, shortest = 1e-9;  // [sqrt(R/g)]

@@ -62,8 +62,8 @@ std::vector<Candidate> candidates_of(const std::vector<Leg>& legs, const FoundLi
 }
 
 /// Whether the hoop rolls before it jumps or its search ends; else it leaves where it landed.
-bool rolls_before(const Outcome& outcome, const FoundLiftOffs& told) {
-  return outcome.status != Status::jumped || !told.bounces || told.lift_offs.size() > 1;
+bool rolls_before(const Outcome& outcome, const FoundLiftOffs& found) {
+  return outcome.status != Status::jumped || !found.bounces || found.lift_offs.size() > 1;
 }
 
 /// Where a hoop jumps; second: the solvers' unit of time.
@@ -153,24 +153,24 @@ Outcome record(const Design& design, const Scene& scene, double tolerance, Recor
   const Hoop<double> hoop = reduce<double>(design, scene);
   const double second = time_unit(scene);
   recorded.holds = true;
-  Outcome found;
+  Outcome whole;
   Sequences<double>([&](Start start, std::span<const Design>, std::span<ContactState<double>> at,
                         std::span<Outcome> outcomes) {
     const ContactState<double> from = at[0];
-    FoundLiftOffs told;
-    solver.solve(start, {&design, 1}, at, scene, outcomes, &told);
+    FoundLiftOffs found;
+    solver.solve(start, {&design, 1}, at, scene, outcomes, &found);
     const Outcome& outcome = outcomes[0];
     recorded.end = at[0];
     if (way_of(hoop, from.angle, from.spin) == 0.0 || outcome.status == Status::airborne_at_release ||
         outcome.status == Status::failed)
       return;
-    if (rolls_before(outcome, told)) recorded.phases.push_back({Phase::rolling, from, 0, told.turns});
+    if (rolls_before(outcome, found)) recorded.phases.push_back({Phase::rolling, from, 0, found.turns});
     if (outcome.status != Status::jumped) return;
     recorded.phases.push_back({Phase::flight, lift_off_of(outcome, second), 0, {}});
     recorded.flights.push_back(
         {outcome.jump_height, outcome.apex_time / second, outcome.flight_time / second, outcome.dip});
-  }).solve({&design, 1}, scene, {&found, 1});
-  return found;
+  }).solve({&design, 1}, scene, {&whole, 1});
+  return whole;
 }
 
 Motion tell_exactly(const Design& design, const Scene& scene, double tolerance, double interval) {

@@ -15,8 +15,8 @@ template <class S>
 class RollAtTimes {
  public:
   /// turns: the angles where it turns round, in order. end: the angle where the phase ends, beyond which
-  /// nothing is asked for; infinite: it goes on for ever, and other turns are looked for. accuracy: of times
-  /// (RollPanels). hoop and turns must outlive this.
+  /// no time is asked for; infinite: it never ends, and turns after those given are found here. accuracy: of
+  /// times (RollPanels). hoop and turns must outlive this.
   RollAtTimes(const Hoop<S>& hoop, const ContactState<S>& from, std::span<const double> turns, double end,
               double accuracy);
 
@@ -36,7 +36,7 @@ class RollAtTimes {
   std::span<const double> turns_;  // those ahead
   double end_, accuracy_;
   ContactState<S> from_;  // where the leg begins
-  bool rests_ = false;    // there, for good
+  bool rests_ = false;    // there, and stays
   bool is_known_ = true;
   double way_ = 1.0;  // of the leg
   S length_{0.0};     // to the phase's end, or half of the way to rest

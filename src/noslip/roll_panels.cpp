@@ -11,16 +11,6 @@
 #include "trajectory/motion_at.hpp"
 
 namespace leapmap {
-namespace {
-
-/// The tables of a panel, made when first asked for.
-template <class Grid>
-const Grid& shared_grid() {
-  static const Grid grid;
-  return grid;
-}
-
-}  // namespace
 
 template <class S>
 RollPanels<S>::RollPanels(const Roll<S>& roll, double accuracy) : roll_(roll), accuracy_(accuracy) {
@@ -39,7 +29,7 @@ double RollPanels<S>::rounding(double past, double E) const {
 
 template <class S>
 auto RollPanels<S>::solve(Panel& panel, S& duration) const -> Excess {
-  const Grid& grid = shared_grid<Grid>();
+  const Grid& grid = shared_panel<Grid>();
   typename Grid::Values rate;
   double unsure = 0.0;
   for (std::size_t i = 0; i < nodes; ++i) {
@@ -58,7 +48,7 @@ auto RollPanels<S>::solve(Panel& panel, S& duration) const -> Excess {
   const auto excess = [&](double tail, double lasts) {
     return 0.25 * tail / (accuracy_ * (1.0 + lasts) + unsure * lasts);
   };
-  return {excess(shared_grid<PlainGrid>().tail(panel.rate), value_of(duration)),
+  return {excess(shared_panel<PlainGrid>().tail(panel.rate), value_of(duration)),
           excess(grid.tail(rate), largest_part(duration))};
 }
 
@@ -84,7 +74,7 @@ bool RollPanels<S>::reach(double time, const S& past) {
       // Panels are stretches of q, but for the last one's end, which may have derivatives of its own.
       panel.span = ends ? q_at(past) - S(reached_) : S(value_of(q_at(S(from + length_))) - reached_);
       excess = solve(panel, duration);
-      // Roundings of derivatives do not fall with it.
+      // Roundings of derivatives do not shrink with the panel.
       if (excess.all <= 1.0 || (excess.plain <= 1.0 && !(excess.all < 0.5 * before))) break;
       if (length_ < shortest) return false;
       before = excess.all;
@@ -108,14 +98,14 @@ auto RollPanels<S>::at(const S& time) const -> At {
   const auto after = std::upper_bound(panels_.begin(), panels_.end(), value_of(time),
                                       [](double t, const Panel& panel) { return t < value_of(panel.begun); });
   const Panel& panel = after == panels_.begin() ? panels_.front() : *std::prev(after);
-  const double place = place_of_integral(shared_grid<PlainGrid>(), panel.times, panel.rate, panel.duration,
+  const double place = place_of_integral(shared_panel<PlainGrid>(), panel.times, panel.rate, panel.duration,
                                          value_of(time) - value_of(panel.begun));
   const S past = angle_at(S(panel.begin) + panel.span * place);
   const Trig<S> phi = trig(S(roll_.release + past));
   const S E = larger(vis_viva_past_release(roll_, past), S(0.0));
   const S spin = sqrt(E / contact_inertia(roll_.hoop, phi));
   const double acceleration = value_of(angular_acceleration(roll_.hoop, phi, spin));
-  const S since = shared_grid<Grid>().template values<1>({&panel.since}, S(place))[0];
+  const S since = shared_panel<Grid>().template values<1>({&panel.since}, S(place))[0];
   const S late = time - panel.begun - since;
   return {past + spin * late, spin + acceleration * late, acceleration};
 }

@@ -17,8 +17,8 @@ class RollPanels {
   /// accuracy: of times, in sqrt(R/g) or relative, whichever is coarser.
   RollPanels(const Roll<S>& roll, double accuracy);
 
-  /// Adds panels up to a time, or to an angle past the release if that comes first, the same at every call.
-  /// False: they would have to be too many or too short, and nothing is known after them.
+  /// Adds panels up to a time, or to an angle past the release if that comes first. Every call must give the
+  /// same angle. False: panels would have to be too many or too short; the motion after them is unknown.
   bool reach(double time, const S& past);
   /// The time from the release to where the panels end.
   const S& time() const { return end_; }

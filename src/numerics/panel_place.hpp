@@ -9,6 +9,13 @@
 
 namespace leapmap {
 
+/// A SpectralPanel of whatever kind, made at the first call.
+template <class Panel>
+const Panel& shared_panel() {
+  static const Panel panel;
+  return panel;
+}
+
 /// The place in [0, 1] where the integral from 0 of a function above zero is `reached`: between two knots by
 /// the cubic that has the inverse function's values and slopes there, then by Newton's method, one step of
 /// which is mostly enough. integrals, values: of the function, at the nodes. whole: its integral over the

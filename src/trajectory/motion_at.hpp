@@ -39,8 +39,8 @@ inline constexpr auto by_every_parameter = [] {
 }();
 
 /// The motion at times since release [s], in ascending order; empty if the design cannot be solved. After the
-/// landing of the jump, or the search's end, the last phase goes on for ever: a flight goes on through the
-/// plane, and a slide that cannot be followed any further as it moves.
+/// landing of the last jump, or the search's end, the last phase continues: a flight through the plane; a
+/// slide, where it cannot be solved any further, to first order.
 ///
 /// by: the places among `differentiable` of the parameters that derivatives are by, in their order in S.
 template <class S>
